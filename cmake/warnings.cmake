@@ -1,0 +1,27 @@
+# Flags every target of the house shares.
+add_library(tutu_warnings INTERFACE)
+target_compile_options(tutu_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  $<$<BOOL:${TUTU_WERROR}>:-Werror>)
+
+# Bits are a promise (state_hash), so contraction is a decision: off. Fused multiply-adds appear only
+# where a Highway kernel asks for one by name. Without errno, square roots vectorise.
+add_library(tutu_arithmetic INTERFACE)
+target_compile_options(tutu_arithmetic INTERFACE -ffp-contract=off -fno-math-errno)
+
+install(TARGETS tutu_warnings tutu_arithmetic EXPORT tutuTargets)
+
+# tutu_library(NAME DEPENDS...): all sources of this folder as library tutu_NAME, alias tutu::NAME.
+function(tutu_library name)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  add_library(tutu_${name} STATIC ${sources} ${headers})
+  add_library(tutu::${name} ALIAS tutu_${name})
+  set_target_properties(tutu_${name} PROPERTIES EXPORT_NAME ${name})
+  target_compile_features(tutu_${name} PUBLIC cxx_std_20)
+  target_include_directories(tutu_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tutu>)
+  target_link_libraries(tutu_${name} PRIVATE tutu_warnings tutu_arithmetic)
+  install(TARGETS tutu_${name} EXPORT tutuTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tutu/${name})
+endfunction()

@@ -1,0 +1,47 @@
+// The colliders of a scene, posed at the start and at the end of a frame.
+#pragma once
+
+#include "proxies/collider.h"
+#include "proxies/shapes.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tutu::proxies {
+
+/// Colliders as plain shapes in world space at both ends of a frame. Collider i of all spans is the same one; index
+/// size() is the ground, where there is one. Does not own anything.
+struct SweptColliders {
+  std::span<const Capsule> start, end; ///< equal lengths, equal radii
+  std::optional<Plane> ground;
+
+  int size() const { return static_cast<int>(start.size()); }
+  int ground_index() const { return size(); }
+};
+
+/// Poses proxies from joint transforms. Disabled proxies are left out. Allocates only when built.
+class ColliderSet {
+public:
+  ColliderSet(std::vector<Proxy> proxies, std::optional<Plane> ground);
+
+  /// Both ends of the frame at this pose: no motion. Also what a teleport or a jump in time calls.
+  void reset(std::span<const Transform> world_from_joint);
+  /// The frame's end becomes its start, and this pose its end.
+  void advance(std::span<const Transform> world_from_joint);
+
+  SweptColliders swept() const { return {start_, end_, ground_}; }
+  /// The colliders at `s` in [0, 1] of the frame: end points move on straight lines. `out` has size() entries.
+  void at(double s, std::span<Capsule> out) const;
+
+  int size() const { return static_cast<int>(proxies_.size()); }
+  const std::vector<Proxy>& proxies() const { return proxies_; } ///< enabled ones, in collider order
+  const std::optional<Plane>& ground() const { return ground_; }
+
+private:
+  std::vector<Proxy> proxies_;
+  std::optional<Plane> ground_;
+  std::vector<Capsule> start_, end_;
+};
+
+} // namespace tutu::proxies

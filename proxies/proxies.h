@@ -1,0 +1,17 @@
+// proxies: shapes follow.
+//
+//   JSON --read_proxies--> Proxy on joints --ColliderSet--> capsules at both ends of a frame (world space)
+//   capsules --CollisionQuery--> candidates once a frame, contacts each substep
+//
+// Units m. Signed distance is negative inside; a contact normal is unit and points from the collider to the particle:
+// particle = closest + distance * normal. Spheres are capsules of no length, so the hot path knows one shape.
+// FCL is asked only in broad_phase.cpp and narrow_phase.cpp.
+#pragma once
+
+#include "proxies/collider.h"        // IWYU pragma: export
+#include "proxies/collider_set.h"    // IWYU pragma: export
+#include "proxies/collision_query.h" // IWYU pragma: export
+#include "proxies/contact.h"         // IWYU pragma: export
+#include "proxies/proxy_file.h"      // IWYU pragma: export
+#include "proxies/shapes.h"          // IWYU pragma: export
+#include "proxies/signed_distance.h" // IWYU pragma: export

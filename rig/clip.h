@@ -1,0 +1,67 @@
+// Motion as key poses, and the pose between two of them.
+#pragma once
+
+#include "rig/skeleton.h"
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace tutu::rig {
+
+/// What happens before the first and after the last key.
+enum class Extrapolation {
+  loop, ///< time wraps; the last key is the first one again (give them the same pose for a smooth loop)
+  clamp ///< the first or the last key is held
+};
+
+/// One joint of one key pose as authored: what is not given is as at rest.
+struct JointKey {
+  std::optional<Vec3> translation; ///< parent_from_joint, m
+  std::optional<Quat> rotation;    ///< parent_from_joint, unit
+  bool operator==(const JointKey&) const = default;
+};
+
+/// The clip as a person edits it, independent of any skeleton. What runs is a Clip.
+struct RawClip {
+  struct Key {
+    double time = 0.0; ///< s
+    std::string name;  ///< for people: "arabesque"; may be empty
+    std::map<std::string, JointKey> joints; ///< by joint name
+  };
+  std::string file; ///< where it came from, for messages
+  std::string name;
+  Extrapolation extrapolation = Extrapolation::loop;
+  std::vector<Key> keys; ///< strictly rising times
+};
+
+/// Key poses for one skeleton: flat, immutable, dense.
+struct Clip {
+  std::string name;
+  Extrapolation extrapolation = Extrapolation::loop;
+  int joint_count = 0;
+  std::vector<double> times;            ///< s, strictly rising, at least one
+  std::vector<Transform> local;         ///< [key * joint_count + joint], parent_from_joint
+
+  double duration() const { return times.back() - times.front(); }
+  std::span<const Transform> key(int k) const { return {local.data() + static_cast<std::size_t>(k) * joint_count, static_cast<std::size_t>(joint_count)}; }
+};
+
+/// Puts a raw clip on a skeleton. Joint names are matched by Skeleton::find. Throws InputError on no keys, on times that do
+/// not strictly rise, on a joint the skeleton lacks, on two names for one joint, on non-finite numbers.
+Clip build_clip(const RawClip& raw, const Skeleton& skeleton);
+
+/// The pose at `time` (s): translations LERP, rotations nlerp along the shorter arc, between the two keys around it.
+/// Always the same pose for the same time; `local` has joint_count entries. Allocates nothing.
+void sample(const Clip& clip, double time, std::span<Transform> local);
+
+/// A clip made for `source` played by `target`: joints paired by name. For each pair the source's rotation away from its
+/// rest pose, seen in model space, is applied to the target's rest pose, whose bone was first turned to point as the source's
+/// bone does (so an A-pose can follow a T-pose). Joints without a partner keep their rest pose. Translations of the topmost
+/// paired joint are scaled by the ratio of its rest heights; other translations are the target's own.
+/// Throws InputError when no joint pairs. `unmatched` (may be null) receives the source joints without a partner.
+Clip retarget(const Clip& clip, const Skeleton& source, const Skeleton& target, std::vector<std::string>* unmatched);
+
+} // namespace tutu::rig

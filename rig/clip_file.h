@@ -1,0 +1,32 @@
+// Clips on disk: JSON for people, and the three texts of the 2021 report. Both round trip without loss.
+#pragma once
+
+#include "rig/clip.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace tutu::rig {
+
+/// JSON (assets/schema/clip.schema.json). Throws InputError with file, JSON pointer, found and expected.
+RawClip read_clip(const std::filesystem::path& file);
+void write_clip(const RawClip& clip, const std::filesystem::path& file);
+
+/// The report's form, blanks between numbers, no names: `translations` (3 numbers a joint) and `rotations` (x y z w a joint)
+/// with one pose a line, `times` on one line. Joints come in skeleton order, or in that of `joints`: a file with one
+/// `index parent name` a line.
+struct ThreeTexts {
+  std::filesystem::path translations, rotations, times;
+  std::optional<std::filesystem::path> joints;
+};
+
+/// Reads a clip from the three texts. Translations in another unit than the skeleton's metres are recognised by the bone lengths
+/// (median over joints of file length to rest length, snapped to 1, 10, 100, 1000, 2.54, ... when within 10 %) and converted;
+/// `unit_note` (may be null) receives one sentence when that happened. Throws InputError with file and line.
+RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std::string* unit_note);
+
+/// Writes every joint of every key, shortest decimal form that reads back to the same bits.
+void write_three_texts(const RawClip& clip, const Skeleton& skeleton, const ThreeTexts& files);
+
+} // namespace tutu::rig

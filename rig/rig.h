@@ -1,0 +1,23 @@
+// rig: joints move.
+//
+//   file --import_character--> Skeleton + Mesh + Skin (+ RawClips)
+//   RawClip --build_clip--> Clip --sample--> local pose --model_from_local--> model_from_joint
+//   model_from_joint --skinning_palette--> palette --skin_vertices--> the posed mesh (only when something asks for it)
+//
+// Spaces. `local`: to the parent joint. `model`: to the character's root; right-handed, +Y up, the character faces +Z.
+// Units: m, s, rad. Import converts; everything behind it is SI.
+// Descriptions (Skeleton, Mesh, Skin, Clip) are immutable flat arrays; poses are spans that the caller owns.
+#pragma once
+
+#include "rig/character.h"  // IWYU pragma: export
+#include "rig/clip.h"       // IWYU pragma: export
+#include "rig/clip_file.h"  // IWYU pragma: export
+#include "rig/drag.h"       // IWYU pragma: export
+#include "rig/error.h"      // IWYU pragma: export
+#include "rig/file_io.h"    // IWYU pragma: export
+#include "rig/json_file.h"  // IWYU pragma: export
+#include "rig/mannequin.h"  // IWYU pragma: export
+#include "rig/math.h"       // IWYU pragma: export
+#include "rig/mesh.h"       // IWYU pragma: export
+#include "rig/skeleton.h"   // IWYU pragma: export
+#include "rig/skin.h"       // IWYU pragma: export

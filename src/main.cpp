@@ -1,0 +1,25 @@
+// tutu: garments on animated characters. Here is only the way from the command line to a command.
+#include "rig/error.h"
+#include "src/commands/commands.h"
+
+#include <fmt/format.h>
+
+int main(int argc, char** argv) {
+  using namespace tutu::app;
+  CLI::App app{"tutu simulates garments on animated, skinned characters."};
+  app.set_version_flag("--version", "tutu " TUTU_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  int status = k_ok;
+  add_inspect(app, status);
+  add_mannequin(app, status);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? k_ok : k_bad_input;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "tutu: {}\n", error.what());
+    return k_bad_input;
+  }
+  return status;
+}

@@ -1,0 +1,52 @@
+// What there is to draw in one frame: const spans into somebody else's memory. The simulation knows no screen.
+#pragma once
+
+#include "rig/math.h"
+#include "rig/mesh.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace tutu::app {
+
+using Colour = std::array<float, 3>; ///< linear RGB, 0..1
+
+/// A triangle surface, world space. Spans must live until it is drawn.
+struct SurfaceView {
+  std::span<const Vec3f> positions, normals; ///< unit normals, one a position
+  std::span<const rig::Triangle> triangles;
+  Colour colour = {0.8f, 0.8f, 0.8f};
+  bool two_sided = false;    ///< cloth: both sides lit, the back a little darker
+  float offset = 0.0f;       ///< m along the normal: half the cloth's thickness, drawn on both sides
+  float sheen = 0.0f;        ///< 0 matt .. 1 silky
+};
+
+struct CapsuleView {
+  Vec3f a, b;
+  float radius = 0.0f;
+  Colour colour = {0.9f, 0.5f, 0.1f};
+};
+
+struct LineView {
+  Vec3f a, b;
+  Colour colour = {1, 1, 1};
+};
+
+struct FrameView {
+  std::vector<SurfaceView> surfaces;
+  std::vector<CapsuleView> capsules; ///< drawn translucent over the surfaces
+  std::vector<LineView> lines;       ///< drawn over everything
+  std::vector<Vec3f> points;         ///< particles
+  bool ground = true;                ///< a floor at `ground_height` with the shadow of all surfaces
+  float ground_height = 0.0f;
+};
+
+/// Looks from `eye` at `target`, +Y up.
+struct Camera {
+  Vec3f eye = {0, 1.2f, 4};
+  Vec3f target = {0, 0.9f, 0};
+  float vertical_fov = 0.6f; ///< rad
+};
+
+} // namespace tutu::app
