@@ -1,0 +1,99 @@
+#include "cloth/drape_file.h"
+#include "cloth/tolerances.h"
+#include "src/scene/session.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tutu::app {
+namespace {
+
+constexpr double k_pose_seconds = 1.0; ///< s from the rest pose to the first pose; slow enough for cloth to follow
+constexpr double k_drape_drag = 4.0;   ///< 1/s; near critical for a skirt's swing (about 1 Hz), so that it settles without ringing
+
+double fastest_of(const Session& session) {
+  double fastest = 0.0;
+  for (const cloth::MassSpring& garment : session.garments())
+    for (const Vec3& v : garment.particles().velocities) fastest = std::max(fastest, v.norm());
+  return fastest;
+}
+
+} // namespace
+
+DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress) {
+  Session session(scene);
+  const std::vector<Transform>& rest = scene.character.skeleton.rest_local;
+  const auto first = scene.clip.key(0);
+  std::vector<Transform> local(rest.size());
+
+  const int total = static_cast<int>(std::ceil(longest / session.frame_seconds()));
+  const int posing = std::min(total, static_cast<int>(std::ceil(k_pose_seconds / session.frame_seconds())));
+  DrapeResult result;
+  for (int frame = 0; frame < total && !session.failure(); ++frame) {
+    const double u = std::min(1.0, static_cast<double>(frame + 1) / posing);
+    const double s = u * u * (3.0 - 2.0 * u); // starts and stops without a jerk
+    for (std::size_t j = 0; j < local.size(); ++j) local[j] = s < 1.0 ? interpolate(rest[j], first[j], s) : first[j];
+    session.advance_to(local, k_drape_drag);
+    result.fastest = fastest_of(session);
+    if (!progress(frame + 1, total)) break;
+    if (frame >= posing && result.fastest < cloth::k_settled_speed) break;
+  }
+  result.seconds = session.frame() * session.frame_seconds();
+  result.failure = session.failure();
+  for (const cloth::MassSpring& garment : session.garments()) result.positions.push_back(garment.particles().positions);
+  return result;
+}
+
+std::uint64_t drape_fingerprint(const Scene& scene) {
+  // Everything becomes numbers, and numbers become a hash: as good as comparing the files, and blind to their layout.
+  cloth::Particles numbers;
+  const auto add = [&](double a, double b = 0.0, double c = 0.0) { numbers.positions.emplace_back(a, b, c); };
+  for (const cloth::Garment& garment : scene.garments) {
+    for (const Vec3& p : garment.rest_positions) numbers.positions.push_back(p);
+    for (const cloth::Spring& spring : garment.springs) add(spring.i, spring.j, spring.stiffness);
+    for (const cloth::Pin& pin : garment.pins) add(pin.particle, pin.attachment);
+    for (const cloth::Seam& seam : garment.seams) add(seam.i, seam.j);
+    const cloth::Fabric& f = garment.fabric;
+    add(f.density, f.drag, f.thickness);
+  }
+  for (const std::vector<int>& joints : scene.attachment_joints)
+    for (const int joint : joints) add(joint);
+  const auto add_pose = [&](std::span<const Transform> pose) {
+    for (const Transform& t : pose) {
+      numbers.positions.push_back(t.translation);
+      add(t.rotation.x(), t.rotation.y(), t.rotation.z());
+    }
+  };
+  add_pose(scene.character.skeleton.rest_local);
+  add_pose(scene.clip.key(0));
+  for (const proxies::Proxy& proxy : scene.proxies) {
+    if (!proxy.enabled) continue;
+    add(proxy.radius, proxy.a.count, proxy.b.count);
+    for (const proxies::Anchor* anchor : {&proxy.a, &proxy.b})
+      for (int k = 0; k < anchor->count; ++k) {
+        add(anchor->joints[k], anchor->weights[k]);
+        numbers.positions.push_back(anchor->points[k]);
+      }
+  }
+  const SceneDescription& d = scene.description;
+  add(d.ground_height ? *d.ground_height : 0.0, d.ground_height ? 1.0 : 0.0);
+  add(d.frames_per_second, d.substeps);
+  return cloth::state_hash(numbers);
+}
+
+std::optional<std::vector<std::vector<Vec3>>> saved_drape(const Scene& scene, bool* stale) {
+  *stale = false;
+  if (!std::filesystem::exists(scene.description.drape)) return std::nullopt;
+  const cloth::Drape saved = cloth::read_drape(scene.description.drape);
+  std::vector<std::vector<Vec3>> positions;
+  bool fits = saved.fingerprint == drape_fingerprint(scene) && saved.garments.size() == scene.garments.size();
+  for (std::size_t g = 0; fits && g < saved.garments.size(); ++g) {
+    fits = saved.garments[g].positions.size() == scene.garments[g].rest_positions.size();
+    positions.push_back(saved.garments[g].positions);
+  }
+  *stale = !fits;
+  if (!fits) return std::nullopt;
+  return positions;
+}
+
+} // namespace tutu::app

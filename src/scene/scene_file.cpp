@@ -1,0 +1,99 @@
+#include "src/scene/scene_file.h"
+
+#include "rig/json_file.h"
+
+namespace tutu::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A path of the scene, from the scene's folder.
+fs::path path_in(const JsonValue& json) {
+  const fs::path path = json.string();
+  if (path.empty()) throw json.error("a path");
+  return (fs::path(json.file()).parent_path() / path).lexically_normal();
+}
+
+Motion read_motion(const JsonValue& json) {
+  if (json.is_string()) return ClipMotion{path_in(json), std::nullopt};
+  json.only_keys({"clip", "retarget_from", "animation", "texts"});
+  const auto clip = json.find("clip"), animation = json.find("animation"), texts = json.find("texts");
+  if (int{clip.has_value()} + int{animation.has_value()} + int{texts.has_value()} != 1)
+    throw json.error("exactly one of: clip, animation, texts");
+  if (const auto from = json.find("retarget_from"); from && !clip) throw from->error("it beside a clip only");
+
+  if (clip) {
+    ClipMotion motion{path_in(*clip), std::nullopt};
+    if (const auto from = json.find("retarget_from")) motion.retarget_from = path_in(*from);
+    return motion;
+  }
+  if (animation) {
+    if (animation->is_string()) return OwnMotion{animation->string()};
+    return OwnMotion{animation->integer_in(0, 1 << 20)};
+  }
+  texts->only_keys({"translations", "rotations", "times", "joints"});
+  rig::ThreeTexts files{path_in(texts->at("translations")), path_in(texts->at("rotations")), path_in(texts->at("times")), {}};
+  if (const auto joints = texts->find("joints")) files.joints = path_in(*joints);
+  return files;
+}
+
+GarmentEntry read_garment_entry(const JsonValue& json) {
+  if (json.is_string()) return {path_in(json)};
+  json.only_keys({"file", "scale", "offset"});
+  GarmentEntry entry{path_in(json.at("file"))};
+  if (const auto scale = json.find("scale")) {
+    entry.scale = scale->is_number() ? Vec3(Vec3::Constant(scale->positive())) : scale->vec3();
+    if (!(entry.scale.minCoeff() > 0.0)) throw scale->error("factors above 0");
+  }
+  if (const auto offset = json.find("offset")) entry.offset = offset->vec3();
+  return entry;
+}
+
+} // namespace
+
+SceneDescription read_scene(const fs::path& file) {
+  const JsonValue json = JsonValue::read(file);
+  json.only_keys({"character", "motion", "proxies", "garments", "ground", "solver", "collision", "drape"});
+  SceneDescription scene;
+  scene.file = file;
+  const JsonValue character = json.at("character");
+  if (character.is_object()) {
+    character.only_keys({"file", "max_influences"});
+    scene.character = path_in(character.at("file"));
+    if (const auto most = character.find("max_influences")) {
+      scene.max_influences = most->integer_in(4, 8);
+      if (scene.max_influences != 4 && scene.max_influences != 8) throw most->error("4 or 8");
+    }
+  } else {
+    scene.character = path_in(character);
+  }
+  scene.motion = read_motion(json.at("motion"));
+  if (const auto proxies = json.find("proxies")) scene.proxies = path_in(*proxies);
+  if (const auto garments = json.find("garments"))
+    for (const JsonValue& garment : garments->items()) scene.garments.push_back(read_garment_entry(garment));
+
+  if (const auto ground = json.find("ground")) {
+    if (ground->is_boolean()) {
+      if (!ground->boolean()) scene.ground_height.reset();
+    } else {
+      ground->only_keys({"height"});
+      scene.ground_height = ground->at("height").number();
+    }
+  }
+  if (const auto solver = json.find("solver")) {
+    solver->only_keys({"name", "substeps", "frames_per_second"});
+    if (const auto name = solver->find("name")) name->string_among({"mass_spring"});
+    if (const auto substeps = solver->find("substeps")) scene.substeps = substeps->integer_in(1, 10000);
+    if (const auto rate = solver->find("frames_per_second")) scene.frames_per_second = rate->integer_in(1, 10000);
+  }
+  if (const auto collision = json.find("collision")) {
+    collision->only_keys({"backend"});
+    if (const auto backend = collision->find("backend"))
+      scene.backend = backend->string_among({"fcl", "brute"}) == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
+  }
+  if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);
+  else scene.drape = fs::path(file).replace_extension(".drape.json");
+  return scene;
+}
+
+} // namespace tutu::app

@@ -1,0 +1,50 @@
+// Scenes on disk: JSON, schema in assets/schema/scene.schema.json. Paths in a scene are relative to the scene's folder.
+#pragma once
+
+#include "proxies/collision_query.h"
+#include "rig/clip_file.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace tutu::app {
+
+/// A JSON clip; with `retarget_from`, one that was made for another character.
+struct ClipMotion {
+  std::filesystem::path clip;
+  std::optional<std::filesystem::path> retarget_from;
+};
+/// An animation of the character's own file, by name or by number.
+struct OwnMotion {
+  std::variant<int, std::string> animation;
+};
+using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts>;
+
+struct GarmentEntry {
+  std::filesystem::path file;
+  Vec3 scale = Vec3::Ones();   ///< per axis, about the model's origin
+  Vec3 offset = Vec3::Zero();  ///< m, after the scale
+};
+
+/// A scene as authored.
+struct SceneDescription {
+  std::filesystem::path file;
+  std::filesystem::path character;
+  int max_influences = 4;
+  Motion motion;
+  std::optional<std::filesystem::path> proxies;
+  std::vector<GarmentEntry> garments;
+  std::optional<double> ground_height = 0.0; ///< m; none = no ground
+  int frames_per_second = 60;
+  int substeps = 16; ///< a frame
+  proxies::Backend backend = proxies::Backend::fcl;
+  std::filesystem::path drape; ///< where the settled garments are kept
+};
+
+/// Throws InputError with file, JSON pointer, found and expected.
+SceneDescription read_scene(const std::filesystem::path& file);
+
+} // namespace tutu::app

@@ -1,0 +1,107 @@
+// A scene in motion: poses the body, follows it with colliders and pins, moves the garments, one frame at a time.
+#pragma once
+
+#include "cloth/mass_spring.h"
+#include "proxies/collider_set.h"
+#include "src/scene/scene.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tutu::app {
+
+/// Milliseconds of the last frame, a stage each.
+struct FrameTimes {
+  double pose = 0.0;    ///< sampling and forward kinematics
+  double proxies = 0.0; ///< colliders and pins
+  double broad = 0.0, cloth = 0.0, contact = 0.0;
+  double skin = 0.0;    ///< vertices of the body
+  double total() const { return pose + proxies + broad + cloth + contact + skin; }
+};
+
+/// Why a session stopped.
+struct SessionFailure {
+  std::string garment;
+  cloth::Divergence divergence;
+  int frame = 0;
+  double time = 0.0; ///< s, of the substep
+
+  /// One sentence: garment, frame, time, particle, position, stretch, strongest force.
+  std::string message() const;
+};
+
+/// The scene must outlive it. Drawing reads from it and never changes it.
+class Session {
+public:
+  explicit Session(const Scene& scene);
+
+  /// Back to time 0 (the clip's start); garments at rest at these positions, one vector a garment (world, m).
+  void start(const std::vector<std::vector<Vec3>>& garment_positions);
+
+  /// Jumps to `time`: the body takes its pose there, and each garment is carried along rigidly with the joint that holds it and is
+  /// at rest, so that the jump is never seen as a velocity.
+  void jump(double time);
+
+  /// One frame of the clip. Does nothing once it has failed.
+  void advance();
+
+  /// One frame towards a given pose (parent_from_joint), with more drag (1/s): how garments are draped.
+  void advance_to(std::span<const Transform> local, double extra_drag);
+
+  /// Skins the body at the present pose; adds to times().skin. Positions and normals are good until the next call.
+  void skin_body();
+
+  const Scene& scene() const { return *scene_; }
+  int frame() const { return frame_; }                     ///< frames done since start()
+  double frame_seconds() const { return 1.0 / scene_->description.frames_per_second; }
+  double time() const { return start_time_ + frame_ * frame_seconds(); } ///< s since the clip's start
+  const std::optional<SessionFailure>& failure() const { return failure_; }
+  const FrameTimes& times() const { return times_; }
+  std::span<const Transform> world_from_joint() const { return world_; }
+  const proxies::ColliderSet& colliders() const { return colliders_; }
+  const std::vector<cloth::MassSpring>& garments() const { return garments_; }
+  std::span<const Vec3f> body_positions() const { return body_positions_; }
+  std::span<const Vec3f> body_normals() const { return body_normals_; }
+  std::string_view backend() const { return query_->name(); }
+  std::uint64_t state_hash() const;
+
+private:
+  void pose_at(double time);
+  void place_pins(std::vector<std::vector<Vec3>>& targets) const;
+
+  const Scene* scene_;
+  std::vector<Transform> local_, world_;
+  std::vector<Transform> rest_inverse_; ///< joint_from_model at rest
+  proxies::ColliderSet colliders_;
+  std::unique_ptr<proxies::CollisionQuery> query_;
+  std::vector<cloth::MassSpring> garments_;
+  std::vector<std::vector<Vec3>> pins_start_, pins_end_; ///< [garment][pin], world, m
+  std::vector<rig::SkinMatrix> palette_;
+  std::vector<Vec3f> body_positions_, body_normals_;
+  FrameTimes times_;
+  std::optional<SessionFailure> failure_;
+  double start_time_ = 0.0;
+  int frame_ = 0;
+};
+
+/// Garments settled on the still body, in two phases: the body goes from its rest pose to the clip's first pose (the
+/// garments are built around the rest pose), then stands until no particle is faster than k_settled_speed or `longest` has passed.
+struct DrapeResult {
+  std::vector<std::vector<Vec3>> positions; ///< world, m, one vector a garment
+  double seconds = 0.0;                     ///< simulated
+  double fastest = 0.0;                     ///< m/s at the end
+  std::optional<SessionFailure> failure;
+};
+/// `progress(done, total)` is called each frame; returning false stops (the positions so far are returned).
+DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress);
+
+/// Of everything a drape depends on: garments, first pose, proxies, ground, solver settings.
+std::uint64_t drape_fingerprint(const Scene& scene);
+
+/// The scene's drape file when it is there and fits; nothing otherwise (a file of another scene state is `stale`). Throws InputError on
+/// a broken file.
+std::optional<std::vector<std::vector<Vec3>>> saved_drape(const Scene& scene, bool* stale);
+
+} // namespace tutu::app
