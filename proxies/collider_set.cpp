@@ -21,6 +21,13 @@ Vec3 on_the_way(const Vec3& start, const Vec3& end, double s) {
 
 } // namespace
 
+void colliders_at(const SweptColliders& colliders, double s, std::span<Capsule> out) {
+  for (std::size_t i = 0; i < colliders.start.size(); ++i) {
+    const Capsule &start = colliders.start[i], &end = colliders.end[i];
+    out[i] = {on_the_way(start.a, end.a, s), on_the_way(start.b, end.b, s), start.radius};
+  }
+}
+
 ColliderSet::ColliderSet(std::vector<Proxy> proxies, std::optional<Plane> ground)
     : proxies_(std::move(proxies)), ground_(std::move(ground)) {
   std::erase_if(proxies_, [](const Proxy& proxy) { return !proxy.enabled; });
@@ -36,11 +43,6 @@ void ColliderSet::reset(std::span<const Transform> world_from_joint) {
 void ColliderSet::advance(std::span<const Transform> world_from_joint) {
   std::swap(start_, end_);
   pose(proxies_, world_from_joint, end_);
-}
-
-void ColliderSet::at(double s, std::span<Capsule> out) const {
-  for (std::size_t i = 0; i < start_.size(); ++i)
-    out[i] = {on_the_way(start_[i].a, end_[i].a, s), on_the_way(start_[i].b, end_[i].b, s), start_[i].radius};
 }
 
 } // namespace tutu::proxies

@@ -20,6 +20,10 @@ struct SweptColliders {
   int ground_index() const { return size(); }
 };
 
+/// The colliders at `s` in [0, 1] of the frame: end points move on straight lines; s = 0 and s = 1 give the ends' own bits.
+/// `out` has size() entries.
+void colliders_at(const SweptColliders& colliders, double s, std::span<Capsule> out);
+
 /// Poses proxies from joint transforms. Disabled proxies are left out. Allocates only when built.
 class ColliderSet {
 public:
@@ -31,8 +35,6 @@ public:
   void advance(std::span<const Transform> world_from_joint);
 
   SweptColliders swept() const { return {start_, end_, ground_}; }
-  /// The colliders at `s` in [0, 1] of the frame: end points move on straight lines. `out` has size() entries.
-  void at(double s, std::span<Capsule> out) const;
 
   int size() const { return static_cast<int>(proxies_.size()); }
   const std::vector<Proxy>& proxies() const { return proxies_; } ///< enabled ones, in collider order

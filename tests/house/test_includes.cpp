@@ -71,8 +71,9 @@ TEST(House, FclStaysBehindItsAdapter) {
 TEST(House, AssimpStaysBehindTheImporter) {
   for (const std::string& folder : k_order)
     for (const Include& include : includes_below(folder))
-      if (include.target.starts_with("assimp/"))
+      if (include.target.starts_with("assimp/")) {
         EXPECT_THAT(include.file.string(), ::testing::StartsWith("rig/import")) << include.target;
+      }
 }
 
 TEST(House, IncludesStartAtTheRoot) {
