@@ -17,9 +17,11 @@ struct SurfaceView {
   std::span<const Vec3f> positions, normals; ///< unit normals, one a position
   std::span<const rig::Triangle> triangles;
   Colour colour = {0.8f, 0.8f, 0.8f};
-  bool two_sided = false;    ///< cloth: both sides lit, the back a little darker
-  float offset = 0.0f;       ///< m along the normal: half the cloth's thickness, drawn on both sides
-  float sheen = 0.0f;        ///< 0 matt .. 1 silky
+  std::span<const Colour> colours = {}; ///< empty, or one a position in the place of `colour` (heat maps)
+  bool wireframe = false;               ///< the triangles' edges drawn on the surface
+  bool two_sided = false;               ///< cloth: both sides lit, the back a little darker
+  float offset = 0.0f;                  ///< m along the normal: half the cloth's thickness, drawn on both sides
+  float sheen = 0.0f;                   ///< 0 matt .. 1 silky
 };
 
 struct CapsuleView {

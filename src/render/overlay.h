@@ -1,0 +1,45 @@
+// What lies over the surfaces: translucent capsules, lines and points.
+#pragma once
+
+#include "src/render/gl_objects.h"
+
+#include <span>
+#include <vector>
+
+namespace tutu::app {
+
+/// The unit capsule's mesh: points of the unit sphere about the +Y axis and the end (0 = a, 1 = b) each belongs to.
+struct CapsuleMesh {
+  std::vector<Eigen::Vector4f> vertices;
+  std::vector<rig::Triangle> triangles; ///< counter-clockwise from outside
+};
+CapsuleMesh capsule_mesh(int segments, int rings);
+
+/// The camera of the frame, as all overlays need it.
+struct PictureFit {
+  Mat4f clip_from_world = Mat4f::Identity();
+  Vec3f eye = Vec3f::Zero();
+  Eigen::Vector2f picture = {1, 1}; ///< pixels
+  float pixel_scale = 1;            ///< pixels of this picture to one of the finished picture
+};
+
+/// All draw into the bound framebuffer and leave depth test on, blending off.
+class Overlay {
+public:
+  Overlay();
+
+  /// Each pixel shows the nearest capsule only. Where it lies before the surfaces it is stronger than where it is
+  /// inside or behind. Writes depth and stencil.
+  void draw_capsules(std::span<const CapsuleView> capsules, const PictureFit& fit);
+  void draw_lines(std::span<const LineView> lines, const PictureFit& fit);
+  /// Round, `radius` in m; hidden by surfaces before them. `pixels_per_metre` is at distance 1 m.
+  void draw_points(std::span<const Vec3f> points, float radius, float pixels_per_metre, const PictureFit& fit);
+
+private:
+  Program capsule_program_, line_program_, point_program_;
+  VertexArray capsule_array_, line_array_, point_array_;
+  StreamBuffer capsule_vertices_, capsule_indices_, capsules_, lines_, points_;
+  int capsule_index_count_ = 0;
+};
+
+} // namespace tutu::app
