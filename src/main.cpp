@@ -11,13 +11,18 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   int status = k_ok;
+  add_play(app, status);
+  add_drape(app, status);
   add_inspect(app, status);
   add_mannequin(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? k_ok : k_bad_input;
-  } catch (const std::exception& error) {
+  } catch (const tutu::InputError& error) {
+    fmt::print(stderr, "tutu: {}\n", error.what());
+    return k_bad_input;
+  } catch (const std::exception& error) { // a disk that is full, a driver that is missing
     fmt::print(stderr, "tutu: {}\n", error.what());
     return k_bad_input;
   }

@@ -1,0 +1,181 @@
+#include "rig/error.h"
+#include "rig/file_io.h"
+#include "src/commands/commands.h"
+#include "src/commands/scene_options.h"
+#include "src/export/png.h"
+#include "src/export/video.h"
+#include "src/interrupt.h"
+#include "src/progress.h"
+#include "src/render/offscreen.h"
+#include "src/scene/run_stats.h"
+#include "src/scene/scene_player.h"
+#include "src/viewer/viewer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <numbers>
+
+namespace tutu::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  SceneOptions scene;
+  bool headless = false, no_pictures = false;
+  std::optional<int> frames;
+  std::string out, json;
+  std::vector<int> at;
+  std::vector<std::string> show, hide;
+  std::string size = "1280x720";
+  int supersample = 1;
+  double yaw_degrees = 25.0, pitch_degrees = 8.0;
+};
+
+/// "1280x720" -> {1280, 720}.
+std::pair<int, int> size_of(const std::string& text) {
+  int width = 0, height = 0, used = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) || width < 16 ||
+      height < 16 || width > 8192 || height > 8192)
+    throw InputError("", "--size", text, "WIDTHxHEIGHT, each from 16 to 8192");
+  return {width, height};
+}
+
+const std::vector<std::pair<std::string, bool Layers::*>> k_layers = {
+    {"body", &Layers::body},           {"cloth", &Layers::cloth},       {"ground", &Layers::ground},   {"wireframe", &Layers::wireframe},
+    {"particles", &Layers::particles}, {"skeleton", &Layers::skeleton}, {"proxies", &Layers::proxies},
+};
+
+std::vector<std::string> layer_names() {
+  std::vector<std::string> names;
+  for (const auto& layer : k_layers) names.push_back(layer.first);
+  return names;
+}
+
+Layers layers_of(const Options& options) {
+  Layers layers;
+  const auto set = [&](const std::vector<std::string>& names, bool on) {
+    for (const auto& [name, member] : k_layers)
+      if (std::find(names.begin(), names.end(), name) != names.end()) layers.*member = on;
+  };
+  set(options.show, true);
+  set(options.hide, false);
+  return layers;
+}
+
+/// Where the pictures of a run go: a film, numbered PNGs, chosen PNGs, or nowhere.
+class Pictures {
+public:
+  Pictures(const Options& options, const Scene& scene) : at_(options.at), stem_(scene.name()), layers_(layers_of(options)) {
+    if (options.no_pictures) return;
+    const auto [width, height] = size_of(options.size);
+    offscreen_.emplace(OffscreenOptions{width, height, options.supersample});
+    const auto [lo, hi] = motion_bounds(scene);
+    const auto radians = [](double degrees) { return static_cast<float>(degrees * std::numbers::pi / 180.0); };
+    camera_ = frame_camera(lo, hi, radians(options.yaw_degrees), radians(options.pitch_degrees), offscreen_->aspect());
+    view_.emplace(scene);
+
+    out_ = options.out;
+    const bool film = at_.empty() && (out_.empty() ? ffmpeg_available() : out_.extension() == ".mp4");
+    if (out_.empty()) out_ = film ? stem_ + ".mp4" : at_.empty() ? stem_ + "-frames" : ".";
+    if (film) video_.emplace(out_, width, height, scene.description.frames_per_second);
+    else fs::create_directories(out_);
+    if (!film && at_.empty() && options.out.empty()) fmt::print(stderr, "note: no ffmpeg here, so the frames go to {}/\n", out_.string());
+  }
+
+  void add(Session& session) {
+    const bool wanted = offscreen_ && (at_.empty() || std::find(at_.begin(), at_.end(), session.frame()) != at_.end());
+    if (!wanted) return;
+    offscreen_->draw(view_->frame(session, layers_), camera_, image_);
+    if (video_) video_->add(image_);
+    else write_png(out_ / fmt::format("{}-{:04}.png", stem_, session.frame()), image_);
+    ++count_;
+  }
+
+  /// What was written, in words; "" for nothing.
+  std::string finish() {
+    if (count_ == 0) return "";
+    if (video_) video_->finish();
+    return video_ ? out_.string() : fmt::format("{} picture{} in {}/", count_, count_ == 1 ? "" : "s", out_.string());
+  }
+
+private:
+  std::vector<int> at_;
+  std::string stem_;
+  Layers layers_;
+  fs::path out_;
+  Camera camera_;
+  std::optional<Offscreen> offscreen_;
+  std::optional<SceneView> view_;
+  std::optional<VideoWriter> video_;
+  Image image_;
+  int count_ = 0;
+};
+
+int play_headless(const Options& options, const Scene& scene, const std::vector<std::vector<Vec3>>& start) {
+  Session session(scene);
+  session.start(start);
+  const int whole = std::max(1, static_cast<int>(std::lround(scene.clip.duration() * scene.description.frames_per_second)));
+  int frames = options.frames.value_or(whole);
+  if (!options.frames && !options.at.empty()) frames = *std::max_element(options.at.begin(), options.at.end());
+
+  Pictures pictures(options, scene);
+  RunStats stats(scene);
+  session.skin_body();
+  if (!options.at.empty()) pictures.add(session); // frame 0 is the draped start; a film begins with the first motion
+  Progress bar(scene.name(), frames);
+  while (session.frame() < frames && !interrupted()) {
+    session.advance();
+    if (session.failure()) break;
+    session.skin_body();
+    stats.add(session);
+    pictures.add(session);
+    bar.tick(session.frame());
+  }
+  bar.finish();
+
+  const bool diverged = session.failure().has_value();
+  const std::string written = diverged ? "" : pictures.finish();
+  if (!options.json.empty()) write_file(options.json, stats.json(session).dump(2) + "\n");
+  fmt::print("{}", stats.text(session));
+  if (!written.empty()) fmt::print("wrote {}\n", written);
+  if (diverged) fmt::print(stderr, "tutu: {}\n", session.failure()->message());
+  if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", session.frame(), frames);
+  return diverged || interrupted() ? k_not_met : k_ok;
+}
+
+int run(const Options& options) {
+  const bool headless = options.headless || !options.json.empty() || !options.at.empty() || !display_available();
+  if (headless) catch_interrupt();
+  const Scene scene = options.scene.load();
+  const auto start = draped_start(scene);
+  if (!start) return k_not_met;
+  if (headless) return play_headless(options, scene, *start);
+  ScenePlayer player(scene, *start);
+  ViewerOptions viewer;
+  return run_viewer(player, viewer);
+}
+
+} // namespace
+
+void add_play(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("play", "Play a scene in a window, or render it without one");
+  auto options = std::make_shared<Options>();
+  options->scene.add_to(*command);
+  command->add_flag("--headless", options->headless, "No window: render to a film (.mp4), or PNGs where there is no ffmpeg");
+  command->add_option("--frames", options->frames, "Frames to play; once through the motion when left out")->check(CLI::Range(1, 10000000));
+  command->add_option("-o,--out", options->out, "Film (.mp4) or folder for PNGs");
+  command->add_option("--json", options->json, "Write the figures of the run to this file (implies --headless)");
+  command->add_option("--at", options->at, "Only pictures of these frames, as PNG (implies --headless)")->delimiter(',')->check(CLI::NonNegativeNumber);
+  command->add_option("--show", options->show, "Layers to show besides the usual")->delimiter(',')->check(CLI::IsMember(layer_names()));
+  command->add_option("--hide", options->hide, "Layers not to show")->delimiter(',')->check(CLI::IsMember(layer_names()));
+  command->add_option("--size", options->size, "Pixels of the pictures")->capture_default_str();
+  command->add_option("--supersample", options->supersample, "Draw this many times finer and average")->check(CLI::Range(1, 4))->capture_default_str();
+  command->add_option("--yaw", options->yaw_degrees, "Camera: degrees around the dancer, 0 from the front")->capture_default_str();
+  command->add_option("--pitch", options->pitch_degrees, "Camera: degrees from above")->capture_default_str();
+  command->add_flag("--no-pictures", options->no_pictures, "Simulate only (with --headless or --json)");
+  command->callback([options, &status] { status = run(*options); });
+}
+
+} // namespace tutu::app

@@ -1,0 +1,48 @@
+#include "src/commands/scene_options.h"
+
+#include "src/interrupt.h"
+#include "src/progress.h"
+#include "src/scene/session.h"
+
+#include <fmt/format.h>
+
+namespace tutu::app {
+
+void SceneOptions::add_to(CLI::App& command) {
+  command.add_option("scene", scene, "Scene file (.json); the shipped dance when left out");
+  command.add_option("--substeps", substeps, "Substeps a frame, in place of the scene's")->check(CLI::Range(1, 10000));
+  command.add_option("--backend", backend, "How particles ask colliders, in place of the scene's")->check(CLI::IsMember({"fcl", "brute"}));
+}
+
+Scene SceneOptions::load() const {
+  const std::filesystem::path file = scene.empty() ? assets_folder() / "scenes" / "dance.json" : std::filesystem::path(scene);
+  SceneDescription description = read_scene(file);
+  if (substeps) description.substeps = *substeps;
+  if (backend) description.backend = *backend == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
+  Scene loaded = load_scene(description);
+  for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
+  return loaded;
+}
+
+std::optional<std::vector<std::vector<Vec3>>> draped_start(const Scene& scene) {
+  bool stale = false;
+  if (auto saved = saved_drape(scene, &stale)) return saved;
+  if (stale)
+    fmt::print(stderr, "note: {} was made for another state of the scene; draping anew (tutu drape saves it)\n",
+               scene.description.drape.string());
+  constexpr double k_longest = 4.0; // s: a start, not the last wrinkle
+  Progress bar("draping", static_cast<int>(k_longest * scene.description.frames_per_second));
+  const DrapeResult result = drape(scene, k_longest, [&](int done, int) {
+    bar.tick(done);
+    return !interrupted();
+  });
+  bar.finish();
+  if (result.failure) {
+    fmt::print(stderr, "tutu: while draping, {}\n", result.failure->message());
+    return std::nullopt;
+  }
+  if (interrupted()) return std::nullopt;
+  return result.positions;
+}
+
+} // namespace tutu::app

@@ -1,0 +1,28 @@
+// What the commands that run a scene have in common: naming it, changing its settings, and starting it draped.
+#pragma once
+
+#include "src/scene/scene.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tutu::app {
+
+/// Options that change a scene's own settings.
+struct SceneOptions {
+  std::string scene; ///< empty: the default scene
+  std::optional<int> substeps;
+  std::optional<std::string> backend;
+
+  void add_to(CLI::App& command);
+  /// The scene file with these options applied; notes of the loading go to stderr.
+  Scene load() const;
+};
+
+/// The draped start of a scene: its saved drape where that fits, else garments settled now (with a progress bar; the file is left
+/// alone). Nothing when the drape diverged or was interrupted; the reason has been printed.
+std::optional<std::vector<std::vector<Vec3>>> draped_start(const Scene& scene);
+
+} // namespace tutu::app

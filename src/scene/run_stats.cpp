@@ -1,0 +1,78 @@
+#include "src/scene/run_stats.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tutu::app {
+namespace {
+
+nlohmann::json json_of(const cloth::Spread& s) { return {{"max", s.max}, {"p99", s.p99}, {"mean", s.mean}}; }
+
+double median_of(std::vector<double> samples) { return cloth::percentile(samples, 0.5); }
+double p99_of(std::vector<double> samples) { return cloth::percentile(samples, 0.99); }
+
+} // namespace
+
+void RunStats::add(const Session& session) {
+  const FrameTimes& t = session.times();
+  const double ms[] = {t.pose, t.proxies, t.broad, t.cloth, t.contact, t.skin, t.total()};
+  for (std::size_t k = 0; k < stages_.size(); ++k) stages_[k].ms.push_back(ms[k]);
+  const proxies::SweptColliders colliders = session.colliders().swept();
+  history_.resize(session.garments().size());
+  for (std::size_t g = 0; g < session.garments().size(); ++g) {
+    const cloth::Garment& garment = scene_->garments[g];
+    const cloth::Particles& particles = session.garments()[g].particles();
+    for (const double depth : cloth::penetration_of(garment, particles, colliders.end, colliders.ground))
+      depths_mm_.push_back(1000.0 * depth);
+    for (const double stretch : cloth::stretch_of(garment, particles)) stretches_.push_back(stretch);
+    History& history = history_[g];
+    if (frames_ >= 2)
+      jitters_.push_back(cloth::jitter_of(garment, history.before_last, history.last, particles.positions, session.frame_seconds()));
+    history.before_last.swap(history.last);
+    history.last = particles.positions;
+  }
+  ++frames_;
+}
+
+nlohmann::json RunStats::json(const Session& session) const {
+  nlohmann::json ms;
+  for (const Stage& stage : stages_) ms[stage.name] = {{"median", median_of(stage.ms)}, {"p99", p99_of(stage.ms)}};
+  const auto inside = std::count_if(depths_mm_.begin(), depths_mm_.end(), [](double mm) { return mm > 1000.0 * k_inside_depth; });
+  nlohmann::json result = {
+      {"scene", scene_->name()},
+      {"frames", frames_},
+      {"seed", 0}, // nothing in a run is random
+      {"solver", "mass_spring"},
+      {"substeps", scene_->description.substeps},
+      {"backend", session.backend()},
+      {"threads", 1},
+      {"ms_per_frame", ms},
+      {"penetration_mm", {{"proxies", json_of(cloth::spread(depths_mm_))}}},
+      {"share_inside", depths_mm_.empty() ? 0.0 : static_cast<double>(inside) / static_cast<double>(depths_mm_.size())},
+      {"stretch", json_of(cloth::spread(stretches_))},
+      {"jitter", cloth::spread(jitters_).mean},
+      {"diverged", session.failure().has_value()},
+      {"recoveries", 0},
+      {"state_hash", fmt::format("{:016x}", session.state_hash())}};
+  if (session.failure()) result["failure"] = session.failure()->message();
+  return result;
+}
+
+std::string RunStats::text(const Session& session) const {
+  int particles = 0;
+  for (const cloth::Garment& garment : scene_->garments) particles += garment.particle_count();
+  std::string text = fmt::format("{}: {} frames ({:.2f} s), {} garments of {} particles, {} proxies ({}), {} substeps a frame\n",
+                                 scene_->name(), frames_, frames_ * session.frame_seconds(), scene_->garments.size(), particles,
+                                 session.colliders().size(), session.backend(), scene_->description.substeps);
+  if (frames_ == 0) return text;
+  text += "ms a frame, median (p99):";
+  for (const Stage& stage : stages_) text += fmt::format("  {} {:.3f} ({:.3f})", stage.name, median_of(stage.ms), p99_of(stage.ms));
+  const cloth::Spread depth = cloth::spread(depths_mm_), stretch = cloth::spread(stretches_);
+  text += fmt::format("\ninto proxies: {:.2f} mm at most, {:.3f} mean   stretch: {:.1f} % at most, {:.1f} p99, {:.1f} mean   "
+                      "jitter: {:.2f} m/s2\nstate hash {:016x}\n",
+                      depth.max, depth.mean, 100 * stretch.max, 100 * stretch.p99, 100 * stretch.mean, cloth::spread(jitters_).mean,
+                      session.state_hash());
+  return text;
+}
+
+} // namespace tutu::app

@@ -1,0 +1,45 @@
+// What a run measured, frame by frame, and how it is reported.
+#pragma once
+
+#include "cloth/metrics.h"
+#include "src/scene/session.h"
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace tutu::app {
+
+/// A particle counts as inside a proxy when it is deeper than this, m: above the rounding of a projection (1e-15), below any
+/// depth that could be seen.
+inline constexpr double k_inside_depth = 1e-6;
+
+/// Collects after each frame; measures outside the timings.
+class RunStats {
+public:
+  explicit RunStats(const Scene& scene) : scene_(&scene) {}
+
+  void add(const Session& session);
+
+  /// The members that DESIGN's `--json` of play, bake and bench holds. Lengths in mm where the name says so.
+  nlohmann::json json(const Session& session) const;
+  /// The same for a person, some lines.
+  std::string text(const Session& session) const;
+
+private:
+  struct Stage {
+    const char* name;
+    std::vector<double> ms; ///< a frame each
+  };
+  struct History { ///< of one garment: the last two frames' positions
+    std::vector<Vec3> last, before_last;
+  };
+
+  const Scene* scene_;
+  std::vector<Stage> stages_ = {{"pose", {}}, {"proxies", {}}, {"broad", {}}, {"cloth", {}}, {"contact", {}}, {"skin", {}}, {"total", {}}};
+  std::vector<double> depths_mm_, stretches_, jitters_;
+  std::vector<History> history_;
+  int frames_ = 0;
+};
+
+} // namespace tutu::app

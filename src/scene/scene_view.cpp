@@ -1,0 +1,94 @@
+#include "src/scene/scene_view.h"
+
+namespace tutu::app {
+namespace {
+
+// Colour-blind safe (Okabe and Ito 2008), in linear RGB.
+constexpr Colour k_orange = {0.791f, 0.347f, 0.0f};
+constexpr Colour k_sky = {0.093f, 0.457f, 0.815f};
+constexpr Colour k_vermilion = {0.665f, 0.112f, 0.0f};
+
+void add_body(const Session& session, FrameView& view, bool wireframe) {
+  const rig::Mesh& mesh = session.scene().character.mesh;
+  for (const rig::MeshPart& part : mesh.parts) {
+    SurfaceView surface;
+    surface.positions = session.body_positions();
+    surface.normals = session.body_normals();
+    surface.triangles = std::span(mesh.triangles).subspan(part.first_triangle, part.triangle_count);
+    surface.colour = part.colour;
+    surface.wireframe = wireframe;
+    view.surfaces.push_back(surface);
+  }
+}
+
+void add_skeleton(const Session& session, FrameView& view) {
+  const rig::Skeleton& skeleton = session.scene().character.skeleton;
+  const auto joints = session.world_from_joint();
+  for (int j = 0; j < skeleton.joint_count(); ++j)
+    if (const int parent = skeleton.parents[j]; parent != rig::k_no_parent)
+      view.lines.push_back({joints[parent].translation.cast<float>(), joints[j].translation.cast<float>(), k_vermilion});
+}
+
+void add_proxies(const Session& session, FrameView& view) {
+  const proxies::ColliderSet& colliders = session.colliders();
+  const auto posed = colliders.swept().end;
+  for (std::size_t c = 0; c < posed.size(); ++c) {
+    const bool sphere = colliders.proxies()[c].kind == proxies::ProxyKind::sphere;
+    view.capsules.push_back({posed[c].a.cast<float>(), posed[c].b.cast<float>(), static_cast<float>(posed[c].radius),
+                             sphere ? k_sky : k_orange});
+  }
+}
+
+} // namespace
+
+SceneView::SceneView(const Scene& scene) {
+  for (const cloth::Garment& garment : scene.garments) cloth_.emplace_back(garment);
+}
+
+FrameView SceneView::frame(const Session& session, const Layers& layers) {
+  FrameView view;
+  view.ground = layers.ground && session.scene().description.ground_height.has_value();
+  view.ground_height = static_cast<float>(session.scene().description.ground_height.value_or(0.0));
+  if (layers.body) add_body(session, view, layers.wireframe);
+  for (std::size_t g = 0; g < cloth_.size(); ++g) {
+    const cloth::Garment& garment = session.scene().garments[g];
+    const std::vector<Vec3>& particles = session.garments()[g].particles().positions;
+    if (layers.cloth) {
+      cloth_[g].update(particles);
+      SurfaceView surface;
+      surface.positions = cloth_[g].positions();
+      surface.normals = cloth_[g].normals();
+      surface.triangles = cloth_[g].triangles();
+      surface.colour = garment.colour;
+      surface.wireframe = layers.wireframe;
+      surface.two_sided = true;
+      surface.offset = static_cast<float>(0.5 * garment.fabric.thickness);
+      surface.sheen = 0.3f;
+      view.surfaces.push_back(surface);
+    }
+    if (layers.particles)
+      for (const Vec3& p : particles) view.points.push_back(p.cast<float>());
+  }
+  if (layers.proxies) add_proxies(session, view);
+  if (layers.skeleton) add_skeleton(session, view);
+  return view;
+}
+
+std::pair<Vec3f, Vec3f> motion_bounds(const Scene& scene) {
+  const rig::Skeleton& skeleton = scene.character.skeleton;
+  std::vector<Transform> local(skeleton.rest_local.size()), model(local.size());
+  Eigen::AlignedBox3d box;
+  constexpr int k_samples = 64; // dense enough for a box that only frames the picture
+  for (int s = 0; s < k_samples; ++s) {
+    rig::sample(scene.clip, scene.clip.times.front() + scene.clip.duration() * s / k_samples, local);
+    rig::model_from_local(skeleton, local, model);
+    for (const Transform& joint : model) box.extend(joint.translation);
+  }
+  constexpr double k_flesh = 0.12; // m around joints: a head, a hand, a skirt's flare
+  box.min() -= Vec3::Constant(k_flesh);
+  box.max() += Vec3::Constant(k_flesh);
+  if (scene.description.ground_height) box.min().y() = *scene.description.ground_height;
+  return {box.min().cast<float>(), box.max().cast<float>()};
+}
+
+} // namespace tutu::app
