@@ -37,6 +37,10 @@ struct RawClip {
   std::vector<Key> keys; ///< strictly rising times
 };
 
+/// Throws InputError (naming `raw.file` and the key) on no keys, on times that do not strictly rise, on non-finite numbers, on a
+/// rotation that is not unit to 1e-6.
+void check(const RawClip& raw);
+
 /// Key poses for one skeleton: flat, immutable, dense.
 struct Clip {
   std::string name;
@@ -49,8 +53,8 @@ struct Clip {
   std::span<const Transform> key(int k) const { return {local.data() + static_cast<std::size_t>(k) * joint_count, static_cast<std::size_t>(joint_count)}; }
 };
 
-/// Puts a raw clip on a skeleton. Joint names are matched by Skeleton::find. Throws InputError on no keys, on times that do
-/// not strictly rise, on a joint the skeleton lacks, on two names for one joint, on non-finite numbers.
+/// Puts a raw clip on a skeleton. Joint names are matched by Skeleton::find. Throws InputError as check() does, on a joint the
+/// skeleton lacks, and on two names for one joint in one key.
 Clip build_clip(const RawClip& raw, const Skeleton& skeleton);
 
 /// The pose at `time` (s): translations LERP, rotations nlerp along the shorter arc, between the two keys around it.

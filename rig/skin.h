@@ -23,7 +23,8 @@ struct Skin {
 };
 
 /// A skinning matrix of one slot, ready for the kernel: columns x, y, z and translation, each with a fourth unused lane.
-struct alignas(16) SkinMatrix {
+/// One cache line: a vector of 16 floats never straddles two.
+struct alignas(64) SkinMatrix {
   float columns[4][4];
 };
 
@@ -31,7 +32,8 @@ struct alignas(16) SkinMatrix {
 void skinning_palette(const Skin& skin, std::span<const Transform> model, std::span<SkinMatrix> palette);
 
 /// v' = sum_k w_k palette[slot_k] v; n' = the same without translation, normalised (exact for rigid slots; a uniform scale
-/// cancels). [Magnenat-Thalmann et al. 1988; Lewis et al. 2000, eq. 1]. Outputs have vertex_count entries; `normals` may be empty.
+/// cancels; one that blends to nothing becomes +Y). [Magnenat-Thalmann et al. 1988; Lewis et al. 2000, eq. 1]. Outputs have
+/// vertex_count entries; `normals` may be empty. Same bits on every processor, and for any range.
 /// One thread, SIMD of the processor it runs on (Highway).
 void skin_vertices(const Mesh& mesh, const Skin& skin, std::span<const SkinMatrix> palette, std::span<Vec3f> positions,
                    std::span<Vec3f> normals);

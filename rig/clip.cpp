@@ -1,0 +1,108 @@
+#include "rig/clip.h"
+
+#include "rig/error.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstdio>
+
+namespace tutu::rig {
+namespace {
+
+std::string shown(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", value);
+  return text;
+}
+
+/// "key 3 (stand)".
+std::string place_of(const RawClip& raw, std::size_t key) {
+  const std::string& name = raw.keys[key].name;
+  return "key " + std::to_string(key) + (name.empty() ? "" : " (" + name + ")");
+}
+
+/// The time of the clip itself that `time` means: inside the keys, before the first or behind the last.
+double time_in_clip(const Clip& clip, double time) {
+  const double first = clip.times.front(), last = clip.times.back();
+  if (clip.extrapolation == Extrapolation::clamp || (time >= first && time <= last)) return time;
+  double offset = std::fmod(time - first, last - first); // exact; has the sign of time - first
+  if (offset < 0.0) offset += last - first;
+  return first + offset;
+}
+
+} // namespace
+
+void check(const RawClip& raw) {
+  if (raw.keys.empty()) throw InputError(raw.file, "clip " + raw.name, "no keys", "at least one key");
+  for (std::size_t k = 0; k < raw.keys.size(); ++k) {
+    const RawClip::Key& key = raw.keys[k];
+    if (!std::isfinite(key.time)) throw InputError(raw.file, place_of(raw, k), "a non-finite time", "a finite time");
+    if (k > 0 && !(key.time > raw.keys[k - 1].time))
+      throw InputError(raw.file, place_of(raw, k),
+                       "time " + shown(key.time) + " s after " + shown(raw.keys[k - 1].time) + " s of the key before",
+                       "strictly rising times");
+    for (const auto& [name, joint] : key.joints) {
+      const std::string place = place_of(raw, k) + ", joint " + name;
+      if (joint.translation && !is_finite(*joint.translation))
+        throw InputError(raw.file, place, "a non-finite translation", "finite numbers");
+      if (joint.rotation && !(std::abs(joint.rotation->norm() - 1.0) < 1e-6))
+        throw InputError(raw.file, place, "a rotation of length " + shown(joint.rotation->norm()), "a unit quaternion");
+    }
+  }
+}
+
+Clip build_clip(const RawClip& raw, const Skeleton& skeleton) {
+  check(raw);
+  const auto joint_count = static_cast<std::size_t>(skeleton.joint_count());
+  Clip clip;
+  clip.name = raw.name;
+  clip.extrapolation = raw.extrapolation;
+  clip.joint_count = skeleton.joint_count();
+  clip.times.reserve(raw.keys.size());
+  clip.local.reserve(raw.keys.size() * joint_count);
+
+  std::vector<const std::string*> named(joint_count); // by which name of this key each joint was set
+  for (std::size_t k = 0; k < raw.keys.size(); ++k) {
+    clip.times.push_back(raw.keys[k].time);
+    clip.local.insert(clip.local.end(), skeleton.rest_local.begin(), skeleton.rest_local.end());
+    Transform* local = clip.local.data() + k * joint_count;
+    std::fill(named.begin(), named.end(), nullptr);
+    for (const auto& [name, key] : raw.keys[k].joints) {
+      const std::string place = place_of(raw, k) + ", joint " + name;
+      const std::optional<int> joint = skeleton.find(name);
+      if (!joint)
+        throw InputError(raw.file, place, "a joint the skeleton lacks, or has more than once", "one of its joints");
+      if (named[*joint])
+        throw InputError(raw.file, place, "the same joint as " + *named[*joint], "every joint of a key once");
+      named[*joint] = &name;
+      if (key.translation) local[*joint].translation = *key.translation;
+      if (key.rotation) local[*joint].rotation = *key.rotation;
+    }
+  }
+  return clip;
+}
+
+void sample(const Clip& clip, double time, std::span<Transform> local) {
+  assert(local.size() == static_cast<std::size_t>(clip.joint_count));
+  const double t = time_in_clip(clip, time);
+  const auto after = std::upper_bound(clip.times.begin(), clip.times.end(), t);
+  // NaN compares as behind every key; it is held at the first one, as is what lies before it.
+  const auto held = [&](int k) { std::ranges::copy(clip.key(k), local.begin()); };
+  if (!(t > clip.times.front())) return held(0);
+  if (after == clip.times.end()) return held(static_cast<int>(clip.times.size()) - 1);
+
+  const int k = static_cast<int>(after - clip.times.begin()) - 1;
+  if (t == clip.times[k]) return held(k);
+  const double s = (t - clip.times[k]) / (clip.times[k + 1] - clip.times[k]);
+  const std::span<const Transform> from = clip.key(k), to = clip.key(k + 1);
+  for (std::size_t j = 0; j < local.size(); ++j) {
+    // What does not move keeps its bits; (1 - s) x + s x need not.
+    local[j] = interpolate(from[j], to[j], s);
+    if (from[j].rotation.coeffs() == to[j].rotation.coeffs()) local[j].rotation = from[j].rotation;
+    for (int axis = 0; axis < 3; ++axis)
+      if (from[j].translation[axis] == to[j].translation[axis]) local[j].translation[axis] = from[j].translation[axis];
+  }
+}
+
+} // namespace tutu::rig
