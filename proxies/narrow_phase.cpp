@@ -16,6 +16,7 @@ namespace {
 /// the axis at full precision even where the point lies on the collider's surface and a difference of witness points
 /// would be 0.
 const fcl::Capsuled k_unit_ball(1.0, 0.0);
+const fcl::Transform3d k_at_origin = fcl::Transform3d::Identity();
 
 /// A rotation whose z axis is the capsule's; the identity for a sphere.
 Eigen::Matrix3d frame_along(const Vec3& axis) {
@@ -59,8 +60,8 @@ Contact NarrowPhase::contact(const Vec3& point, int collider) const {
   point_from_capsule.translation() -= point;
   double gap;
   Vec3 toward_axis, unused;
-  fcl::detail::capsuleCapsuleDistance(k_unit_ball, fcl::Transform3d::Identity(), placed_->shapes[collider],
-                                      point_from_capsule, &gap, &toward_axis, &unused);
+  fcl::detail::capsuleCapsuleDistance(k_unit_ball, k_at_origin, placed_->shapes[collider], point_from_capsule, &gap,
+                                      &toward_axis, &unused);
   const double distance = gap + k_unit_ball.radius;
   const bool on_axis = distance + placed_->shapes[collider].radius <= k_on_axis; // no direction: FCL's is arbitrary
   const Vec3 normal = on_axis ? normal_on_axis(placed_->capsules[collider]) : Vec3(-toward_axis);

@@ -1,0 +1,67 @@
+// Nothing allocates in the frame loop: counted by replacing the global operator new of this program.
+#include "proxies/collision_query.h"
+#include "tests/support/collider_scenes.h"
+
+#include <atomic>
+#include <cstdlib>
+#include <gtest/gtest.h>
+#include <new>
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size ? size : 1)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace {
+
+using namespace tutu;
+using namespace tutu::proxies;
+
+TEST(Allocations, NoneInTheFrameLoopOfAnyBackend) {
+  for (const Backend backend : {Backend::fcl, Backend::brute}) {
+    test::ColliderScene scene = test::dancer_scene(900);
+    const auto query = make_query(backend);
+    Candidates candidates;
+    double sum = 0.0;
+    const auto frame = [&](double sway) {
+      for (Vec3& point : scene.points) point.x() += sway;
+      for (Capsule& capsule : scene.end) capsule.b.z() += sway;
+      query->find_candidates(scene.swept(), scene.points, 0.03, candidates);
+      query->place(scene.end, scene.ground);
+      for (int p = 0; p < 900; ++p)
+        for (const int c : candidates.of(p)) sum += query->contact(scene.points[p], c).distance;
+    };
+    for (int i = 0; i < 20; ++i) frame(i % 2 ? 0.02 : -0.02);
+    candidates.colliders.reserve(900 * (test::k_body_colliders + 1)); // more than ever needed: growth is not at issue
+    const long before = allocations;
+    for (int i = 0; i < 100; ++i) frame(i % 2 ? 0.01 : -0.01);
+    EXPECT_EQ(allocations - before, 0) << query->name();
+    EXPECT_TRUE(std::isfinite(sum));
+  }
+}
+
+TEST(Allocations, NoneInPosingAColliderSet) {
+  Proxy proxy;
+  proxy.kind = ProxyKind::capsule;
+  proxy.a.count = proxy.b.count = 1;
+  proxy.a.weights[0] = proxy.b.weights[0] = 1.0;
+  proxy.b.points[0] = Vec3::UnitX();
+  proxy.radius = 0.1;
+  ColliderSet set({proxy, proxy}, Plane{});
+  const std::vector<Transform> joints(1);
+  std::vector<Capsule> now(2);
+  const long before = allocations;
+  set.reset(joints);
+  set.advance(joints);
+  set.at(0.5, now);
+  EXPECT_EQ(allocations - before, 0);
+}
+
+} // namespace
