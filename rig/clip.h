@@ -63,7 +63,8 @@ void sample(const Clip& clip, double time, std::span<Transform> local);
 
 /// A clip made for `source` played by `target`: joints paired by name. For each pair the source's rotation away from its
 /// rest pose, seen in model space, is applied to the target's rest pose, whose bone was first turned to point as the source's
-/// bone does (so an A-pose can follow a T-pose). Joints without a partner keep their rest pose. Translations of the topmost
+/// bone does (so an A-pose can follow a T-pose; joints where pairs branch or end turn with the one above). Joints without a
+/// partner keep their rest pose. Translations of the topmost
 /// paired joint are scaled by the ratio of its rest heights; other translations are the target's own.
 /// Throws InputError when no joint pairs. `unmatched` (may be null) receives the source joints without a partner.
 Clip retarget(const Clip& clip, const Skeleton& source, const Skeleton& target, std::vector<std::string>* unmatched);

@@ -9,7 +9,7 @@
 
 namespace tutu::rig {
 
-/// JSON (assets/schema/clip.schema.json). Throws InputError with file, JSON pointer, found and expected.
+/// JSON (assets/schema/clip.schema.json); the name defaults to the file's, extrapolation to loop. Throws InputError with file, JSON pointer, found and expected.
 RawClip read_clip(const std::filesystem::path& file);
 void write_clip(const RawClip& clip, const std::filesystem::path& file);
 
@@ -22,11 +22,13 @@ struct ThreeTexts {
 };
 
 /// Reads a clip from the three texts. Translations in another unit than the skeleton's metres are recognised by the bone lengths
-/// (median over joints of file length to rest length, snapped to 1, 10, 100, 1000, 2.54, ... when within 10 %) and converted;
-/// `unit_note` (may be null) receives one sentence when that happened. Throws InputError with file and line.
+/// (median over joints and poses of file length to rest length, within 10 % of m, dm, cm, mm, inches or feet) and converted;
+/// `unit_note` (may be null) receives one sentence when that happened. Rotations within 1e-2 of unit length are normalised.
+/// Throws InputError with file and line; also on translations in no known unit.
 RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std::string* unit_note);
 
-/// Writes every joint of every key, shortest decimal form that reads back to the same bits.
+/// Writes every joint of every key (what is not given is as at rest) in skeleton order, and that order to `files.joints` where
+/// given; names of keys and the extrapolation have no place. Shortest decimal form that reads back to the same bits.
 void write_three_texts(const RawClip& clip, const Skeleton& skeleton, const ThreeTexts& files);
 
 } // namespace tutu::rig
