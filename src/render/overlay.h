@@ -8,13 +8,6 @@
 
 namespace tutu::app {
 
-/// The unit capsule's mesh: points of the unit sphere about the +Y axis and the end (0 = a, 1 = b) each belongs to.
-struct CapsuleMesh {
-  std::vector<Eigen::Vector4f> vertices;
-  std::vector<rig::Triangle> triangles; ///< counter-clockwise from outside
-};
-CapsuleMesh capsule_mesh(int segments, int rings);
-
 /// The camera of the frame, as all overlays need it.
 struct PictureFit {
   Mat4f clip_from_world = Mat4f::Identity();

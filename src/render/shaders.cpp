@@ -63,11 +63,11 @@ uniform float sheen;
 uniform sampler2DShadow shadow_map;
 out vec4 result;
 
-// 3 x 3 bilinear taps: a soft edge about five texels wide.
+// 3 x 3 bilinear taps: a soft edge about six texels wide.
 float key_visibility() {
   float sum = 0.0;
   for (int y = -1; y <= 1; ++y)
-    for (int x = -1; x <= 1; ++x) sum += texture(shadow_map, v_light + vec3(1.5 * texel * vec2(x, y), 0.0));
+    for (int x = -1; x <= 1; ++x) sum += texture(shadow_map, v_light + vec3(1.8 * texel * vec2(x, y), 0.0));
   return sum / 9.0;
 }
 

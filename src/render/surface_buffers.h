@@ -38,8 +38,4 @@ private:
   std::vector<Colour> doubled_colours_;
 };
 
-/// The triangles of a sheet's closed skin: front, back (vertex + vertex_count, turned round) and two for each edge of
-/// `triangles` that only one triangle has.
-std::vector<rig::Triangle> closed_skin(std::span<const rig::Triangle> triangles, std::uint32_t vertex_count);
-
 } // namespace tutu::app
