@@ -1,6 +1,7 @@
 // Reading a character: the order of the steps. Each step has a file of its own (rig/import_*.cpp).
 #include "rig/error.h"
 #include "rig/import_detail.h"
+#include "rig/import_isolated.h"
 
 #include <set>
 
@@ -41,7 +42,9 @@ Import import_character(const std::filesystem::path& file, const ImportOptions& 
   if (options.max_influences != 4 && options.max_influences != 8)
     throw std::invalid_argument("import_character: max_influences is 4 or 8");
   try {
-    return import_loaded(import_detail::load(file), options);
+    const std::uintmax_t size = import_detail::check_acceptable(file);
+    return import_detail::isolated(file.string(), size,
+                                   [&] { return import_loaded(import_detail::load(file), options); });
   } catch (const InputError&) {
     throw;
   } catch (const std::exception& error) { // out of memory on sizes a hostile file claims, and whatever assimp throws

@@ -7,6 +7,7 @@
 #include "rig/character.h"
 
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -33,7 +34,10 @@ struct Source {
   bool already_applied = false;          ///< assimp has put both into the root node
 };
 
-/// Throws InputError on anything that cannot be read as one of the accepted formats.
+/// The size of the file in bytes. Throws InputError when it is missing, empty, too large or not of an accepted format.
+std::uintmax_t check_acceptable(const std::filesystem::path& file);
+
+/// Reads an acceptable file. Throws InputError when assimp cannot read it.
 Source load(const std::filesystem::path& file);
 
 /// A linear map as rotation * stretch: the polar decomposition, the rotation proper (a mirrored map has a stretch with

@@ -38,6 +38,16 @@ std::string lower_extension(const fs::path& file) {
   return extension;
 }
 
+/// assimp quotes the file at length, in whatever bytes it has.
+std::string readable(std::string reason) {
+  constexpr std::size_t k_longest = 160;
+  if (reason.find("bad_alloc") != std::string::npos) return "it would take more memory than its size can explain";
+  for (char& c : reason)
+    if (!std::isprint(static_cast<unsigned char>(c))) c = c == '\n' || c == '\r' || c == '\t' ? ' ' : '?';
+  if (reason.size() > k_longest) reason = reason.substr(0, k_longest) + " ...";
+  return reason;
+}
+
 /// A file may name others (buffers of a .gltf). Only regular files of a sane size are opened: a device or a pipe would
 /// hang.
 class RegularFilesOnly : public Assimp::DefaultIOSystem {
@@ -131,31 +141,35 @@ Affine affine_of(const aiMatrix4x4& m) {
 
 } // namespace
 
+std::uintmax_t check_acceptable(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) throw InputError(file.string(), "", "no such file", k_expected);
+  if (!fs::is_regular_file(file, error))
+    throw InputError(file.string(), "", "something that is not a file", k_expected);
+  const std::string extension = lower_extension(file);
+  if (!k_reader_of.contains(extension))
+    throw InputError(file.string(), "", extension.empty() ? "a name without extension" : "a " + extension + " file",
+                     k_expected);
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (error || size == 0) throw InputError(file.string(), "", "an empty file", k_expected);
+  if (size > k_largest_file) throw InputError(file.string(), "", std::to_string(size) + " bytes", "at most 1 GiB");
+  return size;
+}
+
 Source load(const fs::path& file) {
   Source source;
   source.file = file.string();
   const std::string extension = lower_extension(file);
-  std::error_code error;
-  if (!fs::exists(file, error)) throw InputError(source.file, "", "no such file", k_expected);
-  if (!fs::is_regular_file(file, error)) throw InputError(source.file, "", "something that is not a file", k_expected);
-  const auto reader = k_reader_of.find(extension);
-  if (reader == k_reader_of.end())
-    throw InputError(source.file, "", extension.empty() ? "a name without extension" : "a " + extension + " file",
-                     k_expected);
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error || size == 0) throw InputError(source.file, "", "an empty file", k_expected);
-  if (size > k_largest_file) throw InputError(source.file, "", std::to_string(size) + " bytes", "at most 1 GiB");
-
   const auto importer = std::make_shared<Assimp::Importer>();
   importer->SetIOHandler(new RegularFilesOnly); // owned by the importer
   importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
-  keep_only_reader(*importer, reader->second);
+  importer->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true); // else a file without mesh gets one of cones
+  keep_only_reader(*importer, k_reader_of.at(extension));
   const aiScene* scene = importer->ReadFile(source.file, 0);
   if (!scene || !scene->mRootNode) {
-    std::string reason = importer->GetErrorString();
-    std::replace(reason.begin(), reason.end(), '\n', ' ');
-    throw InputError(source.file, "", "a file that cannot be read (" + reason + ")", k_expected);
+    throw InputError(source.file, "", "a file that cannot be read (" + readable(importer->GetErrorString()) + ")",
+                     k_expected);
   }
   check_indices(*scene, source.file);
   scene = importer->ApplyPostProcessing(aiProcess_Triangulate);

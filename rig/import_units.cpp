@@ -58,14 +58,16 @@ std::optional<Vec3> joint_called(const std::vector<Node>& nodes, const Joints& j
   return std::nullopt;
 }
 
-/// From hips to head, when joints say so, for files without a word about their axes.
+/// For files without a word about their axes: from hips to head and from feet to hips, when joints say so. Both are
+/// asked, since the spine of an animal on four legs lies along Z in a file with Y up.
 char guess_up_axis(const std::vector<Node>& nodes, const Joints& joints, ImportReport& report) {
-  const auto hips = joint_called(nodes, joints, {"pelvis", "hips", "hip"}),
-             head = joint_called(nodes, joints, {"head", "neck"});
-  if (!hips || !head) return 'Y';
-  const Vec3 up = (*head - *hips).cwiseAbs();
-  if (up.z() <= 2.0 * up.y()) return 'Y';
-  report.notes.push_back("the head is above the hips along Z: read as Z up");
+  const auto hips = joint_called(nodes, joints, {"pelvis", "hips", "hip"});
+  const auto head = joint_called(nodes, joints, {"head", "neck"});
+  const auto foot = joint_called(nodes, joints, {"toe", "foot", "ankle", "leg"});
+  if (!hips || !head || !foot) return 'Y';
+  const auto stands_along_z = [](const Vec3& v) { return v.z() > 2.0 * std::abs(v.y()) && v.z() > std::abs(v.x()); };
+  if (!stands_along_z(*head - *hips) || !stands_along_z(*hips - *foot)) return 'Y';
+  report.notes.push_back("the head is above the hips and these above the feet along Z: read as Z up");
   return 'Z';
 }
 
