@@ -91,11 +91,11 @@ TEST(ColliderSet, EndsOfTheFrameAreExact) {
   std::vector<Capsule> now(set.size());
   for (int frame = 0; frame < 200; ++frame) {
     set.advance(random_joints(random, 2));
-    set.at(0.0, now);
+    colliders_at(set.swept(), 0.0, now);
     for (int i = 0; i < set.size(); ++i) EXPECT_TRUE(same(now[i], set.swept().start[i]));
-    set.at(1.0, now);
+    colliders_at(set.swept(), 1.0, now);
     for (int i = 0; i < set.size(); ++i) EXPECT_TRUE(same(now[i], set.swept().end[i]));
-    set.at(0.25, now);
+    colliders_at(set.swept(), 0.25, now);
     EXPECT_LE((now[1].a - (0.75 * set.swept().start[1].a + 0.25 * set.swept().end[1].a)).norm(), 1e-15);
   }
 }
@@ -108,7 +108,7 @@ TEST(ColliderSet, WhatStandsStillStandsStillToTheBit) {
   set.advance(joints);
   std::vector<Capsule> now(set.size());
   for (double s = 0.0; s <= 1.0; s += 0.01) {
-    set.at(s, now);
+    colliders_at(set.swept(), s, now);
     for (int i = 0; i < set.size(); ++i) EXPECT_TRUE(same(now[i], set.swept().start[i]));
   }
 }
