@@ -4,6 +4,8 @@
 #include <fcl/geometry/shape/box.h>
 #include <fcl/narrowphase/collision_object.h>
 
+#include <algorithm>
+
 namespace tutu::proxies {
 namespace {
 

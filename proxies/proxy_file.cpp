@@ -17,6 +17,8 @@ namespace {
 constexpr int k_most_joints = std::tuple_size_v<decltype(Anchor::joints)>;
 /// Weights whose sum is this near to 1 are kept to the bit: what was written is what is read.
 constexpr double k_sum_tolerance = 1e-14;
+/// Weights to write must sum to 1 this well; a worse sum is a mistake, not rounding.
+constexpr double k_unit_sum = 1e-9;
 /// How far apart (m) the joints of a skinned point may see it at rest and still mean one point.
 constexpr double k_one_point = 1e-9;
 
@@ -207,10 +209,15 @@ bool on_one_joint(const Proxy& proxy) {
          (proxy.kind == ProxyKind::sphere || (proxy.b.count == 1 && proxy.a.joints[0] == proxy.b.joints[0]));
 }
 
+/// A blend of two joints' origins.
+bool is_between(const Anchor& anchor) {
+  return anchor.count == 2 && anchor.points[0].isZero(0.0) && anchor.points[1].isZero(0.0);
+}
+
 /// An end that names its own joints.
 Json end_of(const Proxy& proxy, const Anchor& anchor, const rig::Skeleton& skeleton, std::span<const Transform> rest) {
   if (anchor.count == 1) return {{"joint", skeleton.names[anchor.joints[0]]}, {"at", numbers(anchor.points[0])}};
-  if (anchor.count == 2 && anchor.points[0] == Vec3::Zero() && anchor.points[1] == Vec3::Zero())
+  if (is_between(anchor))
     return {{"between", {skeleton.names[anchor.joints[0]], skeleton.names[anchor.joints[1]]}},
             {"at", anchor.weights[1]}};
   const Vec3 point = rest[anchor.joints[0]] * anchor.points[0];
@@ -223,19 +230,29 @@ Json end_of(const Proxy& proxy, const Anchor& anchor, const rig::Skeleton& skele
   return {{"point", numbers(point)}, {"joints", joints}};
 }
 
+void require_writable(const Proxy& proxy, const Anchor& anchor, const rig::Skeleton& skeleton) {
+  if (anchor.count < 1 || anchor.count > k_most_joints) refuse(proxy, "has an end on no joint, or on too many");
+  double sum = 0.0;
+  for (int k = 0; k < anchor.count; ++k) {
+    const auto before = anchor.joints.begin() + k;
+    if (anchor.joints[k] < 0 || anchor.joints[k] >= skeleton.joint_count())
+      refuse(proxy, "is on a joint that does not exist");
+    if (std::find(anchor.joints.begin(), before, anchor.joints[k]) != before) refuse(proxy, "has a joint twice");
+    if (!is_finite(anchor.points[k])) refuse(proxy, "has a non-finite end");
+    if (!(anchor.weights[k] > 0.0 || (anchor.weights[k] == 0.0 && is_between(anchor))))
+      refuse(proxy, "has a weight that is not above 0");
+    sum += anchor.weights[k];
+  }
+  if (!(std::abs(sum - 1.0) <= k_unit_sum)) refuse(proxy, "has weights that do not sum to 1");
+}
+
 void require_writable(const Proxy& proxy, const rig::Skeleton& skeleton) {
   if (!(std::isfinite(proxy.radius) && proxy.radius > 0.0)) refuse(proxy, "has no radius above 0");
   if (!(std::isfinite(proxy.friction) && proxy.friction >= 0.0)) refuse(proxy, "has a friction below 0");
-  if (proxy.kind == ProxyKind::capsule && same(proxy.a, proxy.b))
-    refuse(proxy, "is a capsule with both ends at one point");
-  for (const Anchor& anchor : {proxy.a, proxy.b}) {
-    if (anchor.count < 1 || anchor.count > k_most_joints) refuse(proxy, "has an end on no joint, or on too many");
-    for (int k = 0; k < anchor.count; ++k) {
-      if (anchor.joints[k] < 0 || anchor.joints[k] >= skeleton.joint_count())
-        refuse(proxy, "is on a joint that does not exist");
-      if (!is_finite(anchor.points[k]) || !std::isfinite(anchor.weights[k])) refuse(proxy, "has a non-finite end");
-    }
-  }
+  require_writable(proxy, proxy.a, skeleton);
+  if (proxy.kind == ProxyKind::sphere) return;
+  require_writable(proxy, proxy.b, skeleton);
+  if (same(proxy.a, proxy.b)) refuse(proxy, "is a capsule with both ends at one point");
 }
 
 Json shape_of(const Proxy& proxy, const rig::Skeleton& skeleton, std::span<const Transform> rest) {

@@ -8,6 +8,8 @@
 //
 // Points are in the frame of `joint` (m); "between" blends two joint origins; "point" is in model space at rest and follows its
 // joints by weight (normalised; at most 4). An end may name its own joint: { "joint": "LeftLeg", "at": [0, 0, 0] }.
+// A sphere's center takes every form that an end takes. The shape's own "joint" is for bare points [x, y, z]: required where
+// there is one, refused where there is none. A capsule with both ends at one point is refused: it is a sphere.
 #pragma once
 
 #include "proxies/collider.h"
@@ -21,7 +23,8 @@ namespace tutu::proxies {
 /// name, both or neither shape. A proxy without a name is called after its joint and place in the list.
 std::vector<Proxy> read_proxies(const std::filesystem::path& file, const rig::Skeleton& skeleton);
 
-/// Writes what read_proxies reads back exactly (anchors on one joint as joint points, others as points with weights).
+/// Writes what read_proxies reads back (to 1e-15): anchors on one joint as joint points, blends of two origins as "between",
+/// others as points with weights. Throws std::invalid_argument, before it touches the file, on proxies that no file can say.
 void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& proxies, const rig::Skeleton& skeleton);
 
 } // namespace tutu::proxies

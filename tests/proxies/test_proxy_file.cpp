@@ -234,6 +234,14 @@ TEST(ProxyFile, WhatAFileCannotSayIsNotWritten) {
   bad.a.weights = {0.5, 0.5};
   bad.a.points = {Vec3(0, 0, 1), Vec3(0, 0, 2)};
   expect_refused({bad});
+  bad.a.points = {Vec3::Zero(), Vec3::Zero()}; // a blend of origins, but of what weights
+  bad.a.weights = {0.5, 0.6};
+  expect_refused({bad});
+  bad.a.weights = {1.5, -0.5};
+  expect_refused({bad});
+  bad.a.weights = {0.5, 0.5};
+  bad.a.joints = {1, 1};
+  expect_refused({bad});
   expect_refused({good, good}); // one name twice
   EXPECT_FALSE(std::filesystem::exists(file));
 }
