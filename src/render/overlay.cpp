@@ -13,13 +13,6 @@ constexpr float k_line_half_width = 0.9f; // pixels of the finished picture
 constexpr float k_least_point = 3.0f;     // pixels across
 constexpr Colour k_point_colour = {0.10f, 0.16f, 0.30f};
 
-void set_camera(const Program& program, const PictureFit& fit) {
-  program.use();
-  program.set("clip_from_world", fit.clip_from_world);
-  program.set("eye", fit.eye);
-  program.set("picture", fit.picture);
-}
-
 void blend(bool on) {
   if (on) {
     glEnable(GL_BLEND);
@@ -57,7 +50,7 @@ Overlay::Overlay()
 void Overlay::draw_capsules(std::span<const CapsuleView> capsules, const PictureFit& fit) {
   if (capsules.empty()) return;
   capsules_.upload(GL_ARRAY_BUFFER, capsules.data(), capsules.size_bytes());
-  set_camera(capsule_program_, fit);
+  use_for_picture(capsule_program_, fit);
   capsule_program_.set("key_direction", key_direction());
   glBindVertexArray(capsule_array_.name());
   glEnable(GL_CULL_FACE);
@@ -101,7 +94,7 @@ void Overlay::draw_capsules(std::span<const CapsuleView> capsules, const Picture
 void Overlay::draw_lines(std::span<const LineView> lines, const PictureFit& fit) {
   if (lines.empty()) return;
   lines_.upload(GL_ARRAY_BUFFER, lines.data(), lines.size_bytes());
-  set_camera(line_program_, fit);
+  use_for_picture(line_program_, fit);
   line_program_.set("half_width", k_line_half_width * fit.pixel_scale);
   glBindVertexArray(line_array_.name());
   glDisable(GL_DEPTH_TEST);
@@ -115,7 +108,7 @@ void Overlay::draw_lines(std::span<const LineView> lines, const PictureFit& fit)
 void Overlay::draw_points(std::span<const Vec3f> points, float radius, float pixels_per_metre, const PictureFit& fit) {
   if (points.empty()) return;
   points_.upload(GL_ARRAY_BUFFER, points.data(), points.size_bytes());
-  set_camera(point_program_, fit);
+  use_for_picture(point_program_, fit);
   point_program_.set("radius", radius);
   point_program_.set("pixels_per_unit", pixels_per_metre);
   point_program_.set("least", k_least_point * fit.pixel_scale);

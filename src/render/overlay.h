@@ -2,19 +2,12 @@
 #pragma once
 
 #include "src/render/gl_objects.h"
+#include "src/render/picture_fit.h"
 
 #include <span>
 #include <vector>
 
 namespace tutu::app {
-
-/// The camera of the frame, as all overlays need it.
-struct PictureFit {
-  Mat4f clip_from_world = Mat4f::Identity();
-  Vec3f eye = Vec3f::Zero();
-  Eigen::Vector2f picture = {1, 1}; ///< pixels
-  float pixel_scale = 1;            ///< pixels of this picture to one of the finished picture
-};
 
 /// All draw into the bound framebuffer and leave depth test on, blending off.
 class Overlay {

@@ -100,10 +100,7 @@ void Renderer::draw(const FrameView& view, const Camera& camera, int width, int 
 
 void Renderer::Parts::draw_surfaces(std::span<const SurfaceBuffers> all, const FrameView& view, const Camera& camera,
                                     const LightFit& light, const PictureFit& fit) {
-  surface.use();
-  surface.set("clip_from_world", fit.clip_from_world);
-  surface.set("eye", fit.eye);
-  surface.set("picture", fit.picture);
+  use_for_picture(surface, fit);
   surface.set("light_from_world", light.texture_from_world);
   surface.set("shadow_bias", 1.5f * light.texel);
   surface.set("texel", 1.0f / static_cast<float>(ShadowMaps::k_map_size));
@@ -126,8 +123,7 @@ void Renderer::Parts::draw_surfaces(std::span<const SurfaceBuffers> all, const F
 
 void Renderer::Parts::draw_wires(std::span<const SurfaceBuffers> all, const PictureFit& fit) {
   if (std::none_of(all.begin(), all.end(), [](const SurfaceBuffers& one) { return one.wireframe(); })) return;
-  wire.use();
-  wire.set("clip_from_world", fit.clip_from_world);
+  use_for_picture(wire, fit);
   glPolygonMode(GL_FRONT_AND_BACK, GL_LINE);
   glEnable(GL_POLYGON_OFFSET_LINE);
   glPolygonOffset(-1.0f, -2.0f);
@@ -147,9 +143,7 @@ void Renderer::Parts::draw_wires(std::span<const SurfaceBuffers> all, const Pict
 
 void Renderer::Parts::draw_ground(float height, const Box& box, const LightFit& light, const PictureFit& fit) {
   const Vec3f centre(0.5f * (box.lo.x() + box.hi.x()), height, 0.5f * (box.lo.z() + box.hi.z()));
-  ground.use();
-  ground.set("clip_from_world", fit.clip_from_world);
-  ground.set("picture", fit.picture);
+  use_for_picture(ground, fit);
   ground.set("centre", centre);
   ground.set("radius", k_floor_radius);
   ground.set("pool", std::max(1.0f, 0.9f * (box.hi - box.lo).norm()));
@@ -165,8 +159,7 @@ void Renderer::Parts::draw_ground(float height, const Box& box, const LightFit& 
 }
 
 void Renderer::Parts::draw_backdrop(const PictureFit& fit) {
-  backdrop.use();
-  backdrop.set("picture", fit.picture);
+  use_for_picture(backdrop, fit);
   glDepthFunc(GL_LEQUAL); // it lies exactly on the far plane
   glDepthMask(GL_FALSE);
   glBindVertexArray(nothing.name());

@@ -6,29 +6,34 @@ const char* const k_preamble = R"glsl(#version 330 core
 uniform mat4 clip_from_world;
 uniform vec3 eye;
 uniform vec2 picture; // pixels
+uniform float pixel_scale; // of these make one of the finished picture, in each direction
 )glsl";
 
 const char* const k_fragment_preamble = R"glsl(
-const vec3 k_key_colour = vec3(0.86, 0.82, 0.76); // warm
+const vec3 k_key_colour = vec3(0.92, 0.88, 0.82); // warm
 const vec3 k_fill_colour = vec3(0.13, 0.15, 0.19); // cool
 const vec3 k_rim_colour = vec3(0.55, 0.57, 0.62);
 const vec3 k_fill_direction = vec3(0.777, 0.291, 0.558); // from low on the other side of the key
 
-// Linear light to sRGB, highlights rolled off softly above 0.8, and half a step of ordered noise against banding.
-vec3 encode(vec3 c) {
-  vec3 over = max(c - 0.8, 0.0);
-  c = min(c, 0.8) + 0.2 * over / (over + 0.2);
-  vec3 s = mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
-  // Interleaved gradient noise [Jimenez 2014].
-  float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+// Half a step of noise against banding: interleaved gradient noise [Jimenez 2014], the same all over a finished pixel.
+vec3 dither(vec3 s) {
+  float noise = fract(52.9829189 * fract(dot(floor(gl_FragCoord.xy / pixel_scale), vec2(0.06711056, 0.00583715))));
   return s + (noise - 0.5) / 255.0;
 }
 
-// The studio's paper: bright behind the subject, a little darker towards the corners.
+// Linear light to sRGB, highlights rolled off softly above 0.8.
+vec3 encode(vec3 c) {
+  vec3 over = max(c - 0.8, 0.0);
+  c = min(c, 0.8) + 0.2 * over / (over + 0.2);
+  return dither(mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)));
+}
+
+// The studio's paper: bright behind the subject, a little darker towards the corners. It fills most of a picture, so it
+// is painted in sRGB straight away, and so is the floor: neither needs light added up.
 vec3 backdrop() {
   vec2 p = (gl_FragCoord.xy - vec2(0.5, 0.54) * picture) / picture.y;
-  float r = clamp(dot(p, p) * 0.95, 0.0, 1.0);
-  return mix(vec3(0.800, 0.808, 0.822), vec3(0.470, 0.495, 0.545), r * (2.0 - r));
+  float r = min(dot(p, p) * 0.95, 1.0);
+  return mix(vec3(0.906, 0.910, 0.918), vec3(0.722, 0.740, 0.775), r * (2.0 - r));
 }
 )glsl";
 
@@ -97,7 +102,9 @@ void main() {
   float tight = broad * broad * broad; // ^36
   float rim = edge * edge * edge * clamp(0.35 + dot(n, rim_direction), 0.0, 1.0);
 
-  vec3 light = albedo * (ambient + k_key_colour * key + k_fill_colour * fill);
+  // What reaches a shaded place has met the surface before, so shadows are deeper in colour than lights.
+  vec3 deep = albedo * albedo / max(max(albedo.r, max(albedo.g, albedo.b)), 1e-3);
+  vec3 light = mix(albedo, deep, 0.4) * (ambient + k_fill_colour * fill) + albedo * k_key_colour * key;
   light += k_rim_colour * rim * mix(albedo, vec3(1.0), 0.25) * mix(1.0, 0.5, v_back);
   light += k_key_colour * visible * (0.045 * tight + 0.02 * broad);
   // Silk: a broad highlight in the cloth's own colour and a bright grazing edge.
@@ -167,11 +174,11 @@ uniform vec2 pitch; // uv between taps
 uniform sampler2D image;
 out vec4 result;
 void main() {
-  // Gaussian of standard deviation 2.5 taps, cut at 6.
+  // Gaussian of standard deviation 1.3 taps.
   vec2 sum = vec2(0.0);
   float total = 0.0;
-  for (int i = -6; i <= 6; ++i) {
-    float weight = exp(-0.08 * float(i * i));
+  for (int i = -3; i <= 3; ++i) {
+    float weight = exp(-0.3 * float(i * i));
     sum += weight * texture(image, v_uv + float(i) * pitch).rg;
     total += weight;
   }
@@ -182,7 +189,7 @@ void main() {
 const char* const k_backdrop_fragment = R"glsl(
 in vec2 v_uv;
 out vec4 result;
-void main() { result = vec4(encode(backdrop()), 1.0); }
+void main() { result = vec4(dither(backdrop()), 1.0); }
 )glsl";
 
 const char* const k_ground_vertex = R"glsl(
@@ -213,11 +220,11 @@ void main() {
   vec3 paper = backdrop();
   float d = dot(v_plane, v_plane) / (pool * pool);
   float glow = 1.0 / (1.0 + d * d);
-  vec3 floor_colour = mix(paper * 0.93, vec3(0.835, 0.835, 0.84), 0.75 * glow);
+  vec3 floor_colour = mix(paper * 0.968, vec3(0.925, 0.925, 0.928), 0.75 * glow);
   floor_colour = mix(paper, floor_colour, clamp(3.0 - 0.5 * d, 0.0, 1.0));
-  floor_colour *= 1.0 - key * vec3(0.46, 0.44, 0.40);
-  floor_colour *= 1.0 - occlusion * vec3(0.42, 0.41, 0.39);
-  result = vec4(encode(floor_colour), 1.0);
+  floor_colour *= 1.0 - key * vec3(0.245, 0.233, 0.210);
+  floor_colour *= 1.0 - occlusion * vec3(0.225, 0.220, 0.205);
+  result = vec4(dither(floor_colour), 1.0);
 }
 )glsl";
 

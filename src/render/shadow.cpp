@@ -115,8 +115,8 @@ void ShadowMaps::draw(std::span<const SurfaceBuffers> surfaces, const LightFit& 
     glDrawArrays(GL_TRIANGLES, 0, 3);
   }
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-  blur(near_, k_near_size, 0.5f);
-  blur(wide_, k_wide_size, 1.3f);
+  blur(near_, k_near_size, 1.0f);
+  blur(wide_, k_wide_size, 2.4f);
 }
 
 void ShadowMaps::blur(const std::array<Texture, 2>& textures, int size, float step_texels) {

@@ -12,6 +12,8 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 #include <stdexcept>
+#include <string>
+#include <string_view>
 
 namespace tutu::app {
 namespace {
@@ -38,16 +40,40 @@ struct GlfwSession {
   GlfwSession& operator=(const GlfwSession&) = delete;
 };
 
+void hint_context() {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+}
+
+/// Smooth edges where a graphics card draws; a processor would need several times as long for them.
+int affordable_samples() {
+  hint_context();
+  glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+  GLFWwindow* probe = glfwCreateWindow(16, 16, "", nullptr, nullptr);
+  if (!probe) return 0;
+  glfwMakeContextCurrent(probe);
+  const std::string_view renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const bool software = renderer.find("llvmpipe") != renderer.npos || renderer.find("softpipe") != renderer.npos;
+  glfwDestroyWindow(probe);
+  return software ? 0 : 4;
+}
+
 /// A window with a current OpenGL 3.3 core context.
 struct Window {
   Window(int width, int height, const std::string& title) {
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
-    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    const int samples = affordable_samples();
+    hint_context();
     glfwWindowHint(GLFW_STENCIL_BITS, 8);
     glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    glfwWindowHint(GLFW_SAMPLES, samples);
     handle = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    if (!handle && samples > 0) {
+      glfwWindowHint(GLFW_SAMPLES, 0);
+      handle = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    }
     if (!handle) throw std::runtime_error("no window: OpenGL 3.3 cannot be had on this display" + glfw_reason());
     glfwMakeContextCurrent(handle);
     glfwSwapInterval(1);
