@@ -60,10 +60,11 @@ Skeleton mannequin_skeleton() {
   std::vector<Vec3> places;
   const auto add = [&](const JointPlace& joint, std::string_view side) {
     const Vec3 place(side == "Right" ? -joint.x : joint.x, joint.y, joint.z);
-    const auto parent = joint.parent.empty() ? std::nullopt : skeleton.find(side_name(joint.parent, side));
+    const int parent = joint.parent.empty() ? k_no_parent : *skeleton.find(side_name(joint.parent, side));
+    const Vec3 parent_place = parent == k_no_parent ? Vec3(Vec3::Zero()) : places[parent];
     skeleton.names.push_back(side_name(joint.name, side));
-    skeleton.parents.push_back(parent.value_or(k_no_parent));
-    skeleton.rest_local.push_back({Quat::Identity(), parent ? Vec3(place - places[*parent]) : place});
+    skeleton.parents.push_back(parent);
+    skeleton.rest_local.push_back({Quat::Identity(), place - parent_place});
     places.push_back(place);
   };
   for (const JointPlace& joint : k_joints)
