@@ -116,7 +116,7 @@ void ShadowMaps::draw(std::span<const SurfaceBuffers> surfaces, const LightFit& 
   }
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
   blur(near_, k_near_size, 1.0f);
-  blur(wide_, k_wide_size, 2.4f);
+  blur(wide_, k_wide_size, 2.0f);
 }
 
 void ShadowMaps::blur(const std::array<Texture, 2>& textures, int size, float step_texels) {

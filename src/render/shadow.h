@@ -26,7 +26,7 @@ LightFit fit_light(const Vec3f& lo, const Vec3f& hi, float ground_height);
 
 class ShadowMaps {
 public:
-  static constexpr int k_map_size = 1024, k_near_size = 256, k_wide_size = 128;
+  static constexpr int k_map_size = 1024, k_near_size = 192, k_wide_size = 96;
 
   ShadowMaps();
 

@@ -1,6 +1,5 @@
 #include "src/viewer/panel.h"
 
-#include <GLFW/glfw3.h>
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -50,6 +49,7 @@ void scale_time(ViewerState& state, float factor) {
 }
 
 void apply_character(unsigned character, ViewerState& state) {
+  if (character == ' ') state.playing = !state.playing;
   if (character == '.') state.step_once = true;
   if (character == '?') state.help = !state.help;
   if (character == '[') scale_time(state, 0.5f);
@@ -123,11 +123,12 @@ void draw_message(const std::string& message) {
 void draw_help() {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * screen.x, 0.45f * screen.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowBgAlpha(0.92f);
   ImGui::Begin("help", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
   for (const HelpLine& line : k_help) {
-    ImGui::TextUnformatted(line.keys);
-    ImGui::SameLine(ImGui::GetFontSize() * 11);
-    ImGui::TextDisabled("%s", line.what);
+    ImGui::TextColored(ImGui::GetStyle().Colors[ImGuiCol_CheckMark], "%s", line.keys);
+    ImGui::SameLine(ImGui::GetFontSize() * 14);
+    ImGui::TextUnformatted(line.what);
   }
   ImGui::End();
 }
@@ -179,9 +180,6 @@ void read_input(ViewerState& state) {
   }
   if (io.WantTextInput) return;
   for (const ImWchar character : io.InputQueueCharacters) apply_character(character, state);
-  if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) state.playing = !state.playing;
-  if (ImGui::IsKeyPressed(GLFW_KEY_HOME, false)) state.restart = true;
-  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) state.quit = true;
 }
 
 void draw_panels(const Player& player, const SmoothTimes& times, ViewerState& state) {

@@ -37,7 +37,8 @@ private:
 /// The look of the panels, once after ImGui has begun. `scale`: of the display, 1 = 96 dpi.
 void set_panel_style(float scale);
 
-/// Keys and mouse of this frame, as far as no panel wants them. Between ImGui::NewFrame and Render.
+/// Characters and mouse of this frame, as far as no panel wants them. Between ImGui::NewFrame and Render.
+/// Keys without a character (Home, Esc) come by run_viewer's own callback.
 void read_input(ViewerState& state);
 
 /// All panels. Between ImGui::NewFrame and Render.

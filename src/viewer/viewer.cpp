@@ -85,6 +85,14 @@ struct Window {
   GLFWwindow* handle = nullptr;
 };
 
+/// For keys that write nothing. By callback, since a key that is hit between two slow pictures is up again when asked.
+void note_key(GLFWwindow* window, int key, int, int action, int) {
+  if (action != GLFW_PRESS) return;
+  ViewerState& state = *static_cast<ViewerState*>(glfwGetWindowUserPointer(window));
+  if (key == GLFW_KEY_HOME) state.restart = true;
+  if (key == GLFW_KEY_ESCAPE) state.quit = true;
+}
+
 struct ImGuiSession {
   explicit ImGuiSession(GLFWwindow* window) {
     ImGui::CreateContext();
@@ -165,10 +173,12 @@ bool display_available() {
 int run_viewer(Player& player, const ViewerOptions& options) {
   const GlfwSession glfw;
   const Window window(options.width, options.height, "tutu - " + player.title());
+  ViewerState state;
+  glfwSetWindowUserPointer(window.handle, &state);
+  glfwSetKeyCallback(window.handle, note_key); // before ImGui's, which then calls it
   const ImGuiSession imgui(window.handle);
   Renderer renderer;
 
-  ViewerState state;
   state.layers = options.layers;
   state.time_scale = static_cast<float>(options.time_scale);
   state.playing = options.playing;
