@@ -71,9 +71,8 @@ public:
     if (options.no_pictures) return;
     const auto [width, height] = size_of(options.size);
     offscreen_.emplace(OffscreenOptions{width, height, options.supersample});
-    const auto [lo, hi] = motion_bounds(scene);
     const auto radians = [](double degrees) { return static_cast<float>(degrees * std::numbers::pi / 180.0); };
-    camera_ = frame_camera(lo, hi, radians(options.yaw_degrees), radians(options.pitch_degrees), offscreen_->aspect());
+    camera_ = frame_camera(motion_points(scene), radians(options.yaw_degrees), radians(options.pitch_degrees), offscreen_->aspect());
     view_.emplace(scene);
 
     out_ = options.out;

@@ -1,6 +1,7 @@
 #include "src/render/camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tutu::app {
@@ -65,22 +66,43 @@ Vec3f eye_direction(float yaw, float pitch) {
   return {std::cos(pitch) * std::sin(yaw), std::sin(pitch), std::cos(pitch) * std::cos(yaw)};
 }
 
-Camera frame_camera(const Vec3f& lo, const Vec3f& hi, float yaw, float pitch, float aspect) {
+Camera frame_camera(std::span<const Vec3f> points, float yaw, float pitch, float aspect) {
+  Eigen::AlignedBox3f box;
+  for (const Vec3f& point : points) box.extend(point);
   Camera camera;
-  camera.target = 0.5f * (lo + hi);
-  camera.eye = camera.target + eye_direction(yaw, pitch);
+  camera.target = box.center();
+  const Vec3f direction = eye_direction(yaw, pitch);
+  camera.eye = camera.target + direction;
   const Eigen::Matrix3f rows = axes(camera);
   const float tangent_y = std::tan(0.5f * camera.vertical_fov), tangent_x = tangent_y * aspect;
-  // A corner at (x, y, z) of the camera's axes about the target is inside when |x| <= tangent * (distance - z).
   float distance = 0.1f;
-  for (int corner = 0; corner < 8; ++corner) {
-    const Vec3f point((corner & 1 ? hi : lo).x(), (corner & 2 ? hi : lo).y(), (corner & 4 ? hi : lo).z());
-    const Vec3f seen = rows * (point - camera.target);
-    distance = std::max({distance, seen.z() + k_margin * std::abs(seen.x()) / tangent_x,
-                         seen.z() + k_margin * std::abs(seen.y()) / tangent_y});
+  constexpr int k_rounds = 4; // each round centres what the last one framed; the shift shrinks by far more than half
+  for (int round = 0; round < k_rounds; ++round) {
+    // A point at (x, y, z) of the camera's axes about the target is inside when |x| <= tangent * (distance - z).
+    distance = 0.1f;
+    for (const Vec3f& point : points) {
+      const Vec3f seen = rows * (point - camera.target);
+      distance = std::max({distance, seen.z() + k_margin * std::abs(seen.x()) / tangent_x,
+                           seen.z() + k_margin * std::abs(seen.y()) / tangent_y});
+    }
+    if (round + 1 == k_rounds) break;
+    Eigen::AlignedBox2f picture; // slopes of the lines of sight
+    for (const Vec3f& point : points) {
+      const Vec3f seen = rows * (point - camera.target);
+      picture.extend(Eigen::Vector2f(seen.head<2>() / (distance - seen.z())));
+    }
+    const Eigen::Vector2f middle = distance * picture.center();
+    camera.target += rows.transpose() * Vec3f(middle.x(), middle.y(), 0.0f);
   }
-  camera.eye = camera.target + distance * eye_direction(yaw, pitch);
+  camera.eye = camera.target + distance * direction;
   return camera;
+}
+
+Camera frame_camera(const Vec3f& lo, const Vec3f& hi, float yaw, float pitch, float aspect) {
+  std::array<Vec3f, 8> corners;
+  for (int corner = 0; corner < 8; ++corner)
+    corners[corner] = {(corner & 1 ? hi : lo).x(), (corner & 2 ? hi : lo).y(), (corner & 4 ? hi : lo).z()};
+  return frame_camera(corners, yaw, pitch, aspect);
 }
 
 } // namespace tutu::app

@@ -4,6 +4,7 @@
 #include "src/render/frame_view.h"
 
 #include <optional>
+#include <span>
 
 namespace tutu::app {
 
@@ -24,8 +25,10 @@ Mat4f orthographic(const Vec3f& lo, const Vec3f& hi);
 /// Nothing for a point behind the eye.
 std::optional<Eigen::Vector2f> project(const Camera& camera, int width, int height, const Vec3f& point);
 
-/// Looks at the middle of the box from `yaw` (rad about +Y; 0 = from +Z, pi/2 = from +X) and `pitch` (rad, positive =
-/// from above), as near as it can be with the eight corners, and a margin, inside the picture.
+/// Looks from `yaw` (rad about +Y; 0 = from +Z, pi/2 = from +X) and `pitch` (rad, positive = from above), as near as
+/// it can be with all points, and a margin, inside the picture, and them in its middle. At least one point.
+Camera frame_camera(std::span<const Vec3f> points, float yaw, float pitch, float aspect);
+/// The same for the corners of a box.
 Camera frame_camera(const Vec3f& lo, const Vec3f& hi, float yaw, float pitch, float aspect);
 
 /// Unit vector from a camera's target to its eye for these angles; frame_camera and the viewer share it.

@@ -42,7 +42,9 @@ void add_proxies(const Session& session, FrameView& view) {
 } // namespace
 
 SceneView::SceneView(const Scene& scene) {
-  for (const cloth::Garment& garment : scene.garments) cloth_.emplace_back(garment);
+  constexpr int k_refinement = 3; // cells a cell each way: a skirt of 30 x 30 looks woven, not folded from paper
+  for (const cloth::Garment& garment : scene.garments) // flipped: a garment's rows run down, its front is outside
+    cloth_.emplace_back(GridShape{garment.rows, garment.columns, garment.woven_shut}, k_refinement, true);
 }
 
 FrameView SceneView::frame(const Session& session, const Layers& layers) {
@@ -54,7 +56,9 @@ FrameView SceneView::frame(const Session& session, const Layers& layers) {
     const cloth::Garment& garment = session.scene().garments[g];
     const std::vector<Vec3>& particles = session.garments()[g].particles().positions;
     if (layers.cloth) {
-      cloth_[g].update(particles);
+      particles_.clear();
+      for (const Vec3& p : particles) particles_.push_back(p.cast<float>());
+      cloth_[g].update(particles_);
       SurfaceView surface;
       surface.positions = cloth_[g].positions();
       surface.normals = cloth_[g].normals();
@@ -74,21 +78,20 @@ FrameView SceneView::frame(const Session& session, const Layers& layers) {
   return view;
 }
 
-std::pair<Vec3f, Vec3f> motion_bounds(const Scene& scene) {
+std::vector<Vec3f> motion_points(const Scene& scene) {
+  constexpr int k_samples = 64;    // poses; dense enough for a frame around them
+  constexpr double k_flesh = 0.12; // m around joints: a head, a hand, a skirt's flare
   const rig::Skeleton& skeleton = scene.character.skeleton;
   std::vector<Transform> local(skeleton.rest_local.size()), model(local.size());
-  Eigen::AlignedBox3d box;
-  constexpr int k_samples = 64; // dense enough for a box that only frames the picture
+  std::vector<Vec3f> points;
   for (int s = 0; s < k_samples; ++s) {
     rig::sample(scene.clip, scene.clip.times.front() + scene.clip.duration() * s / k_samples, local);
     rig::model_from_local(skeleton, local, model);
-    for (const Transform& joint : model) box.extend(joint.translation);
+    for (const Transform& joint : model)
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {-k_flesh, k_flesh}) points.push_back((joint.translation + side * Vec3::Unit(axis)).cast<float>());
   }
-  constexpr double k_flesh = 0.12; // m around joints: a head, a hand, a skirt's flare
-  box.min() -= Vec3::Constant(k_flesh);
-  box.max() += Vec3::Constant(k_flesh);
-  if (scene.description.ground_height) box.min().y() = *scene.description.ground_height;
-  return {box.min().cast<float>(), box.max().cast<float>()};
+  return points;
 }
 
 } // namespace tutu::app

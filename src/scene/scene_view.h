@@ -2,7 +2,7 @@
 #pragma once
 
 #include "src/render/camera.h"
-#include "src/scene/cloth_surface.h"
+#include "src/render/smooth_grid.h"
 #include "src/scene/session.h"
 #include "src/viewer/player.h"
 
@@ -18,10 +18,11 @@ public:
   FrameView frame(const Session& session, const Layers& layers);
 
 private:
-  std::vector<ClothSurface> cloth_;
+  std::vector<SmoothGrid> cloth_; ///< what is drawn is finer than what is simulated, and goes through every particle
+  std::vector<Vec3f> particles_;
 };
 
-/// The box (lo, hi; m) that the scene's joints sweep over the whole clip, with room for limbs and skirts around them.
-std::pair<Vec3f, Vec3f> motion_bounds(const Scene& scene);
+/// Points (m) around all places the scene's joints go to over the whole clip, with room for flesh and cloth: what a camera must show.
+std::vector<Vec3f> motion_points(const Scene& scene);
 
 } // namespace tutu::app
