@@ -37,6 +37,10 @@ struct Source {
 /// The size of the file in bytes. Throws InputError when it is missing, empty, too large or not of an accepted format.
 std::uintmax_t check_acceptable(const std::filesystem::path& file);
 
+/// Throw InputError on joint and weight indices out of range and on weights that are negative or no number.
+void check_collada_skins(const std::string& file);
+void check_gltf_skins(const std::string& file);
+
 /// Reads an acceptable file. Throws InputError when assimp cannot read it.
 Source load(const std::filesystem::path& file);
 

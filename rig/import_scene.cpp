@@ -160,6 +160,9 @@ Source load(const fs::path& file) {
   Source source;
   source.file = file.string();
   const std::string extension = lower_extension(file);
+  if (extension == ".dae") check_collada_skins(source.file);
+  if (extension == ".gltf" || extension == ".glb") check_gltf_skins(source.file);
+
   const auto importer = std::make_shared<Assimp::Importer>();
   importer->SetIOHandler(new RegularFilesOnly); // owned by the importer
   importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <string_view>
 
 namespace tutu::rig::import_detail {
 namespace {
@@ -13,10 +14,35 @@ constexpr double k_same_place = 1e-4;    ///< of the skeleton's size: joints nea
 constexpr double k_same_rotation = 1e-3; ///< rad
 constexpr std::size_t k_most_joints = 10'000;
 
+bool coincide(const Node& a, const Node& b, double tolerance) {
+  return (a.global.translation() - b.global.translation()).norm() <= tolerance &&
+         a.split.rotation.angularDistance(b.split.rotation) <= k_same_rotation;
+}
+
+/// Size of the skeleton, in the file's unit.
+double extent(const std::vector<Node>& nodes, const std::vector<bool>& joint) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (joint[n]) box.extend(nodes[n].global.translation());
+  return box.isEmpty() ? 0.0 : box.diagonal().norm();
+}
+
+/// The nodes that bones name, and their twins: assimp tells names only, so a bone may mean any node of its name and
+/// place.
 std::vector<bool> bone_nodes(const std::vector<Node>& nodes, const std::vector<Surface>& surfaces) {
   std::vector<bool> bone(nodes.size(), false);
   for (const Surface& surface : surfaces)
     for (const Binding& binding : surface.bindings) bone[binding.node] = true;
+  const double tolerance = k_same_place * extent(nodes, bone);
+  std::multimap<std::string_view, std::size_t> named;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    if (bone[n]) named.emplace(nodes[n].name, n);
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (bone[n] || nodes[n].holds_mesh || nodes[n].is_aid) continue;
+    const auto [begin, end] = named.equal_range(nodes[n].name);
+    bone[n] =
+        std::any_of(begin, end, [&](const auto& other) { return coincide(nodes[n], nodes[other.second], tolerance); });
+  }
   return bone;
 }
 
@@ -68,13 +94,6 @@ std::vector<bool> joint_nodes(const Source& source, const std::vector<Node>& nod
   return joint;
 }
 
-double extent(const std::vector<Node>& nodes, const std::vector<bool>& joint) {
-  Eigen::AlignedBox3d box;
-  for (std::size_t n = 0; n < nodes.size(); ++n)
-    if (joint[n]) box.extend(nodes[n].global.translation());
-  return box.isEmpty() ? 0.0 : box.diagonal().norm();
-}
-
 /// Nodes of the joints, hierarchy after hierarchy, the largest first; parent before child.
 std::vector<int> by_hierarchy(const std::vector<Node>& nodes, const std::vector<bool>& joint, int& hierarchies) {
   std::vector<int> top(nodes.size(), -1);
@@ -109,7 +128,7 @@ public:
     auto& same = by_name_[node.name];
     for (const int joint : same) {
       const bool fits = parent == k_no_parent || parent == joints_.parents[joint];
-      if (!fits || !coincide(node, nodes_[joints_.nodes[joint]])) continue;
+      if (!fits || !coincide(node, nodes_[joints_.nodes[joint]], tolerance_)) continue;
       node.joint = joint;
       ++shared_;
       return;
@@ -134,11 +153,6 @@ public:
   }
 
 private:
-  bool coincide(const Node& a, const Node& b) const {
-    return (a.global.translation() - b.global.translation()).norm() <= tolerance_ &&
-           a.split.rotation.angularDistance(b.split.rotation) <= k_same_rotation;
-  }
-
   /// Never the name of another node, so that names that are unique in the file stay as they are.
   std::string unique_name(const std::string& original) {
     const std::string base = original.empty() ? "joint" : original;
