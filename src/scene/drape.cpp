@@ -45,11 +45,14 @@ DrapeResult drape(const Scene& scene, double longest, const std::function<bool(i
 }
 
 std::uint64_t drape_fingerprint(const Scene& scene) {
-  // Everything becomes numbers, and numbers become a hash: as good as comparing the files, and blind to their layout.
+  // Everything becomes numbers, and numbers become a hash: as good as comparing the files, and blind to their layout. Rounded far
+  // below any length that matters: another processor's sine may differ in its last bit.
   cloth::Particles numbers;
-  const auto add = [&](double a, double b = 0.0, double c = 0.0) { numbers.positions.emplace_back(a, b, c); };
+  const auto rounded = [](double v) { return std::round(v * 1e8); };
+  const auto add = [&](double a, double b = 0.0, double c = 0.0) { numbers.positions.emplace_back(rounded(a), rounded(b), rounded(c)); };
+  const auto add_point = [&](const Vec3& p) { add(p.x(), p.y(), p.z()); };
   for (const cloth::Garment& garment : scene.garments) {
-    for (const Vec3& p : garment.rest_positions) numbers.positions.push_back(p);
+    for (const Vec3& p : garment.rest_positions) add_point(p);
     for (const cloth::Spring& spring : garment.springs) add(spring.i, spring.j, spring.stiffness);
     for (const cloth::Pin& pin : garment.pins) add(pin.particle, pin.attachment);
     for (const cloth::Seam& seam : garment.seams) add(seam.i, seam.j);
@@ -60,7 +63,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
     for (const int joint : joints) add(joint);
   const auto add_pose = [&](std::span<const Transform> pose) {
     for (const Transform& t : pose) {
-      numbers.positions.push_back(t.translation);
+      add_point(t.translation);
       add(t.rotation.x(), t.rotation.y(), t.rotation.z());
     }
   };
@@ -72,7 +75,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
     for (const proxies::Anchor* anchor : {&proxy.a, &proxy.b})
       for (int k = 0; k < anchor->count; ++k) {
         add(anchor->joints[k], anchor->weights[k]);
-        numbers.positions.push_back(anchor->points[k]);
+        add_point(anchor->points[k]);
       }
   }
   const SceneDescription& d = scene.description;

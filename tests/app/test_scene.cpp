@@ -1,0 +1,159 @@
+// The pieces between a scene file and a moving scene.
+#include "rig/error.h"
+#include "rig/file_io.h"
+#include "src/scene/scene_player.h"
+#include "tests/support/paths.h"
+
+#include <gmock/gmock.h>
+
+using namespace tutu;
+using namespace tutu::app;
+using namespace tutu::test;
+
+namespace {
+
+const Scene& dance() {
+  static const Scene scene = load_scene(read_scene(source_file("assets/scenes/dance.json")));
+  return scene;
+}
+
+std::vector<std::vector<Vec3>> rest_of(const Scene& scene) {
+  std::vector<std::vector<Vec3>> positions;
+  for (const cloth::Garment& garment : scene.garments) positions.push_back(garment.rest_positions);
+  return positions;
+}
+
+TEST(Scene, TheDanceIsWhatTheReportHad) {
+  const Scene& scene = dance();
+  EXPECT_EQ(scene.character.skeleton.joint_count(), 52);
+  EXPECT_EQ(scene.character.mesh.parts.size(), 2u) << "two skins put in common";
+  EXPECT_GE(scene.clip.times.size(), 10u);
+  EXPECT_GE(scene.clip.duration(), 8.0);
+  ASSERT_EQ(scene.garments.size(), 2u);
+  EXPECT_EQ(scene.garments[0].particle_count(), 30 * 30);
+  EXPECT_EQ(scene.garments[0].seams.size(), 10u) << "sewn from the waist down to a third";
+  EXPECT_EQ(scene.garments[1].particle_count(), 15 * 15);
+  int spheres = 0;
+  for (const proxies::Proxy& proxy : scene.proxies) spheres += proxy.kind == proxies::ProxyKind::sphere;
+  EXPECT_EQ(spheres, 9);
+  EXPECT_EQ(scene.proxies.size(), 27u);
+}
+
+TEST(Scene, TheClipClosesItsLoop) {
+  const rig::Clip& clip = dance().clip;
+  const auto first = clip.key(0), last = clip.key(static_cast<int>(clip.times.size()) - 1);
+  for (int j = 0; j < clip.joint_count; ++j) {
+    EXPECT_LT((first[j].translation - last[j].translation).norm(), 1e-9) << j;
+    EXPECT_LT(first[j].rotation.angularDistance(last[j].rotation), 1e-6) << j;
+  }
+}
+
+TEST(Session, PinsFollowTheirJointsRotationToo) {
+  const Scene& scene = dance();
+  Session session(scene);
+  session.start(rest_of(scene));
+  const std::vector<Transform> rest = rig::rest_model(scene.character.skeleton);
+  for (int frame = 0; frame < 3; ++frame) session.advance();
+  ASSERT_FALSE(session.failure().has_value());
+  for (std::size_t g = 0; g < scene.garments.size(); ++g)
+    for (const cloth::Pin& pin : scene.garments[g].pins) {
+      const int joint = scene.attachment_joints[g][pin.attachment];
+      const Vec3 expected = session.world_from_joint()[joint] * (rest[joint].inverse() * scene.garments[g].rest_positions[pin.particle]);
+      EXPECT_LT((session.garments()[g].particles().positions[pin.particle] - expected).norm(), 1e-12);
+    }
+}
+
+TEST(Session, AJumpInTimeIsNeverSeenAsAVelocity) {
+  const Scene& scene = dance();
+  Session session(scene);
+  session.start(rest_of(scene));
+  session.advance();
+  session.jump(5.0);
+  EXPECT_NEAR(session.time(), 5.0, 1e-12);
+  for (const cloth::MassSpring& garment : session.garments())
+    for (const Vec3& v : garment.particles().velocities) EXPECT_EQ(v, Vec3::Zero());
+  const auto colliders = session.colliders().swept();
+  for (int c = 0; c < colliders.size(); ++c) EXPECT_EQ(colliders.start[c].a, colliders.end[c].a);
+  session.advance();
+  EXPECT_FALSE(session.failure().has_value());
+}
+
+TEST(Session, DrawingDoesNotChangeTheRun) {
+  const Scene& scene = dance();
+  Session plain(scene), drawn(scene);
+  SceneView view(scene);
+  Layers all;
+  all.particles = all.skeleton = all.proxies = all.wireframe = true;
+  plain.start(rest_of(scene));
+  drawn.start(rest_of(scene));
+  for (int frame = 0; frame < 3; ++frame) {
+    plain.advance();
+    drawn.advance();
+    drawn.skin_body();
+    const FrameView picture = view.frame(drawn, all);
+    EXPECT_EQ(picture.capsules.size(), scene.proxies.size());
+    EXPECT_EQ(picture.points.size(), 900u + 225u);
+    EXPECT_EQ(picture.surfaces.size(), 4u);
+    EXPECT_EQ(picture.lines.size(), 51u);
+  }
+  EXPECT_EQ(plain.state_hash(), drawn.state_hash());
+}
+
+TEST(Session, RestartingGivesTheSameRun) {
+  const Scene& scene = dance();
+  ScenePlayer player(scene, rest_of(scene));
+  Session session(scene);
+  session.start(rest_of(scene));
+  for (int frame = 0; frame < 3; ++frame) {
+    player.step();
+    session.advance();
+  }
+  const std::uint64_t hash = session.state_hash();
+  session.jump(3.0);
+  session.start(rest_of(scene));
+  for (int frame = 0; frame < 3; ++frame) session.advance();
+  EXPECT_EQ(session.state_hash(), hash);
+  EXPECT_NEAR(player.time(), session.time(), 1e-12);
+}
+
+TEST(Drape, ShippedDrapeFitsTheDance) {
+  bool stale = true;
+  EXPECT_TRUE(saved_drape(dance(), &stale).has_value()) << "run: tutu drape assets/scenes/dance.json";
+  EXPECT_FALSE(stale);
+}
+
+TEST(Drape, FingerprintSeesWhatMatters) {
+  Scene scene = dance();
+  const std::uint64_t before = drape_fingerprint(scene);
+  EXPECT_EQ(drape_fingerprint(dance()), before);
+  scene.garments[0].fabric.density *= 1.001;
+  EXPECT_NE(drape_fingerprint(scene), before);
+  scene = dance();
+  scene.proxies[3].radius += 1e-4;
+  EXPECT_NE(drape_fingerprint(scene), before);
+  scene = dance();
+  scene.description.ground_height = 0.01;
+  EXPECT_NE(drape_fingerprint(scene), before);
+}
+
+TEST(SceneFile, ReadsEveryFormOfMotion) {
+  const auto folder = scratch_folder();
+  const auto read = [&](const std::string& motion) {
+    write_file(folder / "s.json", R"({"character": {"file": "a.dae", "max_influences": 8}, "ground": false, "motion": )" + motion + "}");
+    return read_scene(folder / "s.json");
+  };
+  EXPECT_EQ(std::get<ClipMotion>(read("\"m.json\"").motion).clip, folder / "m.json");
+  EXPECT_EQ(*std::get<ClipMotion>(read(R"({"clip": "m.json", "retarget_from": "b.dae"})").motion).retarget_from, folder / "b.dae");
+  EXPECT_EQ(std::get<int>(std::get<OwnMotion>(read(R"({"animation": 2})").motion).animation), 2);
+  EXPECT_EQ(std::get<std::string>(std::get<OwnMotion>(read(R"({"animation": "jump"})").motion).animation), "jump");
+  const SceneDescription texts = read(R"({"texts": {"translations": "t", "rotations": "r", "times": "k"}})");
+  EXPECT_EQ(std::get<rig::ThreeTexts>(texts.motion).times, folder / "k");
+  EXPECT_EQ(texts.max_influences, 8);
+  EXPECT_FALSE(texts.ground_height.has_value());
+  EXPECT_THROW(read(R"({"animation": 2, "clip": "m.json"})"), InputError);
+  EXPECT_THROW(read(R"({"animation": 2, "retarget_from": "m.dae"})"), InputError);
+  EXPECT_THROW(read("3"), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+} // namespace
