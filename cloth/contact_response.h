@@ -23,7 +23,7 @@ struct ContactCounts {
 /// the collider's motion, so a pair at distance d stays apart until particle and collider together have travelled d.
 class ContactResponse {
 public:
-  /// `offset`: what particles keep from every surface, m >= 0 (half the cloth's thickness).
+  /// `offset`: what particles keep from every surface, m >= 0 (Fabric::contact_offset).
   explicit ContactResponse(double offset) : offset_(offset) {}
 
   /// Broad phase for a frame of `seconds`. The spans must live until the next call.

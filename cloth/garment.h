@@ -45,7 +45,10 @@ struct Fabric {
   double shear = 10.0;     ///< N/m
   double bend = 2.0;       ///< N/m, of the springs between particles two apart
   double drag = 0.5;       ///< 1/s: the air takes drag * m * v
-  double thickness = 0.004; ///< full gap, m: particles keep half of it from colliders
+  double thickness = 0.004; ///< full gap of the sheet, m: particles keep half of it from colliders,
+  double clearance = 0.0;   ///< and this much more, m: for skin that proxies leave bare, and for chords between particles
+
+  double contact_offset() const { return 0.5 * thickness + clearance; } ///< what particles keep from colliders, m
 };
 
 /// Holds the particles of one row or of chosen particles on a joint, where they are in the rest pose.

@@ -62,7 +62,7 @@ std::variant<GridShape, TubeShape> read_shape(const JsonValue& json) {
 }
 
 Fabric read_fabric(const JsonValue& json) {
-  json.only_keys({"density", "stretch", "shear", "bend", "drag", "thickness"});
+  json.only_keys({"density", "stretch", "shear", "bend", "drag", "thickness", "clearance"});
   Fabric fabric;
   if (const auto v = json.find("density")) fabric.density = v->positive();
   if (const auto v = json.find("stretch")) fabric.stretch = v->positive();
@@ -70,6 +70,7 @@ Fabric read_fabric(const JsonValue& json) {
   if (const auto v = json.find("bend")) fabric.bend = v->non_negative();
   if (const auto v = json.find("drag")) fabric.drag = v->non_negative();
   if (const auto v = json.find("thickness")) fabric.thickness = v->non_negative();
+  if (const auto v = json.find("clearance")) fabric.clearance = v->non_negative();
   return fabric;
 }
 

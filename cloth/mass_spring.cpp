@@ -46,7 +46,7 @@ double elastic_energy(const Garment& garment, std::span<const Vec3> positions) {
 }
 
 MassSpring::MassSpring(const Garment& garment)
-    : garment_(&garment), pinned_(garment.rest_positions.size(), 0), contacts_(0.5 * garment.fabric.thickness) {
+    : garment_(&garment), pinned_(garment.rest_positions.size(), 0), contacts_(garment.fabric.contact_offset()) {
   for (const Pin& pin : garment.pins) pinned_[pin.particle] = 1;
   reset(garment.rest_positions);
 }

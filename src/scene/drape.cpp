@@ -57,7 +57,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
     for (const cloth::Pin& pin : garment.pins) add(pin.particle, pin.attachment);
     for (const cloth::Seam& seam : garment.seams) add(seam.i, seam.j);
     const cloth::Fabric& f = garment.fabric;
-    add(f.density, f.drag, f.thickness);
+    add(f.density, f.drag, f.contact_offset());
   }
   for (const std::vector<int>& joints : scene.attachment_joints)
     for (const int joint : joints) add(joint);
