@@ -52,7 +52,7 @@ public:
     const double on_leg =
         (1.0 - step(2.0 * (of(Limb::leg) - trunk) / 0.060 - 1.0)) * (trunk < arm ? 1.0 : 1.0 - on_arm);
 
-    const double raised = on_arm * cut("LeftArm", {0.93, -0.36, 0.0}, 0.055).beyond(p);
+    const double raised = on_arm * cut("LeftArm", {0.93, -0.36, 0.0}, 0.068).beyond(p);
     // The legs share only the crotch; below it the thighs are close, but apart.
     const double left = step(p.x() / (0.001 + 0.024 * step((p.y() - 0.810) / 0.035)));
     const Vec3 q(-p.x(), p.y(), p.z());
