@@ -183,7 +183,7 @@ double leg(const Vec3& p) {
   static const Loft k_foot_loft = {Vec3::Zero(), Vec3::UnitZ(), Vec3::UnitX(), Vec3::UnitY(), 0.011, k_foot};
   double d = loft(p, k_leg_loft);
   if (p.y() < 0.62) {
-    d = blend(d, ellipsoid(p, {0.1165, 0.492, 0.0305}, {0.020, 0.030, 0.0185}), 0.016); // kneecap
+    d = blend(d, ellipsoid(p, {0.1165, 0.492, 0.0250}, {0.022, 0.032, 0.0180}), 0.016); // kneecap
     double foot = loft(p, k_foot_loft);
     foot = blend(foot, ellipsoid(p, {0.164, 0.083, -0.036}, {0.008, 0.012, 0.011}), 0.02); // outer ankle
     foot = blend(foot, ellipsoid(p, {0.126, 0.090, -0.029}, {0.008, 0.012, 0.011}), 0.02); // inner ankle

@@ -52,13 +52,16 @@ public:
     const double on_leg =
         (1.0 - step(2.0 * (of(Limb::leg) - trunk) / 0.060 - 1.0)) * (trunk < arm ? 1.0 : 1.0 - on_arm);
 
-    const double raised = on_arm * cut("LeftArm", {0.93, -0.36, 0.0}, 0.055).beyond(p);
+    const double raised = on_arm * cut("LeftArm", {0.93, -0.36, 0.0}, 0.068).beyond(p);
     // The legs share only the crotch; below it the thighs are close, but apart.
     const double left = step(p.x() / (0.001 + 0.024 * step((p.y() - 0.810) / 0.035)));
+    // Between them the skin belongs to the pelvis, or it would be drawn along when both knees open.
+    const double between = 0.75 * step((p.y() - 0.780) / 0.020) * (1.0 - step((p.x() - 0.024) / 0.024));
+    const double off_trunk = (1.0 - raised) * on_leg * (1.0 - between);
     const Vec3 q(-p.x(), p.y(), p.z());
     const Cut hip = cut("LeftUpLeg", {0.45, -0.89, 0.0}, 0.070);
-    const double left_leg = (1.0 - raised) * on_leg * left * hip.beyond(p);
-    const double right_leg = (1.0 - raised) * on_leg * (1.0 - left) * hip.beyond(q);
+    const double left_leg = off_trunk * left * hip.beyond(p);
+    const double right_leg = off_trunk * (1.0 - left) * hip.beyond(q);
 
     weigh_arm(p, raised, d, weights);
     weigh_leg(p, left_leg, "Left", weights);
