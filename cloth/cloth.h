@@ -5,7 +5,8 @@
 //            integrate -> pins -> contacts (ContactResponse) -> seams -> forces and the divergence check
 //
 // Garments are authored in the character's model space at rest; particles move in world space. m, s, kg, N.
-// Cloth knows no joint and no FCL: pins arrive as spans of targets, colliders as posed plain shapes behind CollisionQuery.
+// Cloth knows no joint and no FCL: pins arrive as spans of targets, colliders as posed plain shapes behind
+// CollisionQuery.
 #pragma once
 
 #include "cloth/contact_response.h" // IWYU pragma: export

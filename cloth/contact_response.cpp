@@ -34,7 +34,8 @@ void ContactResponse::respond(proxies::CollisionQuery& query, double s, std::spa
   proxies::colliders_at(colliders_, s, placed_);
   query.place(placed_, colliders_.ground);
   for (std::size_t c = 0; c < placed_.size(); ++c) // no point of the capsule moves farther than its farther end
-    collider_travel_[c] += std::max((placed_[c].a - placed_before_[c].a).norm(), (placed_[c].b - placed_before_[c].b).norm());
+    collider_travel_[c] +=
+        std::max((placed_[c].a - placed_before_[c].a).norm(), (placed_[c].b - placed_before_[c].b).norm());
 
   double farthest = 0.0;
   for (int i = 0; i < particles.count(); ++i) {

@@ -15,7 +15,8 @@ Drape read_drape(const std::filesystem::path& file) {
   const JsonValue fingerprint = json.at("fingerprint");
   const std::string digits = fingerprint.string();
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), drape.fingerprint, 16);
-  if (error != std::errc() || end != digits.data() + digits.size()) throw fingerprint.error("up to 16 hexadecimal digits");
+  if (error != std::errc() || end != digits.data() + digits.size())
+    throw fingerprint.error("up to 16 hexadecimal digits");
   for (const JsonValue& item : json.at("garments").items()) {
     item.only_keys({"name", "positions"});
     DrapedGarment garment{item.at("name").string(), {}};
@@ -32,7 +33,8 @@ void write_drape(const Drape& drape, const std::filesystem::path& file) {
     text += fmt::format("{}\n    {{ \"name\": {}, \"positions\": [", g ? "," : "", nlohmann::json(garment.name).dump());
     for (std::size_t i = 0; i < garment.positions.size(); ++i) {
       const Vec3& p = garment.positions[i];
-      text += fmt::format("{}\n      [{}, {}, {}]", i ? "," : "", p.x(), p.y(), p.z()); // shortest form that reads back the same
+      text += fmt::format("{}\n      [{}, {}, {}]", i ? "," : "", p.x(), p.y(),
+                          p.z()); // shortest form that reads back the same
     }
     text += "] }";
   }

@@ -41,7 +41,8 @@ Layout lay_out(const GarmentDescription& description, const GridShape& grid) {
 /// The ring at fraction `s` of the profile's length.
 TubeShape::Ring ring_at(const std::vector<TubeShape::Ring>& rings, double s) {
   const auto gap = [&](std::size_t k) {
-    const double radius_step = 0.5 * (rings[k + 1].radius_x + rings[k + 1].radius_z - rings[k].radius_x - rings[k].radius_z);
+    const double radius_step =
+        0.5 * (rings[k + 1].radius_x + rings[k + 1].radius_z - rings[k].radius_x - rings[k].radius_z);
     return std::hypot(rings[k + 1].height - rings[k].height, radius_step);
   };
   double total = 0.0;
@@ -50,7 +51,9 @@ TubeShape::Ring ring_at(const std::vector<TubeShape::Ring>& rings, double s) {
   std::size_t k = 0;
   while (k + 2 < rings.size() && along > gap(k)) along -= gap(k++);
   const double t = gap(k) > 0.0 ? std::clamp(along / gap(k), 0.0, 1.0) : 0.0;
-  const auto mix = [&](double TubeShape::Ring::*member) { return (1.0 - t) * rings[k].*member + t * rings[k + 1].*member; };
+  const auto mix = [&](double TubeShape::Ring::*member) {
+    return (1.0 - t) * rings[k].*member + t * rings[k + 1].*member;
+  };
   using Ring = TubeShape::Ring;
   return {mix(&Ring::height), mix(&Ring::radius_x), mix(&Ring::radius_z), mix(&Ring::centre_x), mix(&Ring::centre_z)};
 }
@@ -88,7 +91,8 @@ double cell_area(const Layout& layout, int row, int column) {
 }
 
 void add_springs(const Layout& layout, const Fabric& fabric, Garment& garment) {
-  // A spring that stands for sheet area A of stiffness k (N/m) at rest length L stores k A strain^2 / 2, so it is k A / L^2 stiff.
+  // A spring that stands for sheet area A of stiffness k (N/m) at rest length L stores k A strain^2 / 2, so it is k A /
+  // L^2 stiff.
   const auto add = [&](SpringKind kind, int i, int j, double sheet_stiffness, double area) {
     const double length = (layout.positions[i] - layout.positions[j]).norm();
     garment.springs.push_back({i, j, length, sheet_stiffness * area / (length * length), kind});
@@ -140,7 +144,8 @@ void add_pins(const GarmentDescription& description, Garment& garment) {
       first = resolved(first, count);
       last = resolved(last, count);
       if (first < 0 || last >= count || first > last)
-        throw InputError(description.file, place, std::string(what) + " " + std::to_string(first) + " to " + std::to_string(last),
+        throw InputError(description.file, place,
+                         std::string(what) + " " + std::to_string(first) + " to " + std::to_string(last),
                          "a range within 0.." + std::to_string(count - 1) + " (or counted from the end, -1 the last)");
     };
     resolve(attachment.first_row, attachment.last_row, garment.rows, "rows");
@@ -150,8 +155,8 @@ void add_pins(const GarmentDescription& description, Garment& garment) {
         const int particle = row * garment.columns + column;
         if (owner[particle] >= 0)
           throw InputError(description.file, place,
-                           "row " + std::to_string(row) + ", column " + std::to_string(column) + " held by attachment " +
-                               std::to_string(owner[particle]) + " too",
+                           "row " + std::to_string(row) + ", column " + std::to_string(column) +
+                               " held by attachment " + std::to_string(owner[particle]) + " too",
                            "each particle held once");
         owner[particle] = static_cast<int>(a);
         garment.pins.push_back({particle, static_cast<int>(a)});
@@ -182,10 +187,12 @@ Garment build_garment(const GarmentDescription& description) {
       for (const std::array<int, 3>& t : {std::array{a, c, b}, std::array{b, c, d}}) {
         const double area = triangle_area(layout.positions[t[0]], layout.positions[t[1]], layout.positions[t[2]]);
         if (!(area > 0.0))
-          throw InputError(description.file, "/shape", "a cell without area at row " + std::to_string(row) + ", column " +
-                           std::to_string(column), "every cell to have an area");
+          throw InputError(description.file, "/shape",
+                           "a cell without area at row " + std::to_string(row) + ", column " + std::to_string(column),
+                           "every cell to have an area");
         for (const int particle : t) garment.masses[particle] += description.fabric.density * area / 3.0;
-        garment.triangles.push_back({static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
+        garment.triangles.push_back(
+            {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]), static_cast<std::uint32_t>(t[2])});
       }
     }
   add_springs(layout, description.fabric, garment);
@@ -193,7 +200,8 @@ Garment build_garment(const GarmentDescription& description) {
 
   if (const auto* tube = std::get_if<TubeShape>(&description.shape); tube && tube->seam) {
     const int sewn_rows = static_cast<int>(std::lround(*tube->seam * layout.rows));
-    for (int row = 0; row < sewn_rows; ++row) garment.seams.push_back({layout.at(row, 0), layout.at(row, layout.columns - 1)});
+    for (int row = 0; row < sewn_rows; ++row)
+      garment.seams.push_back({layout.at(row, 0), layout.at(row, layout.columns - 1)});
   }
   return garment;
 }

@@ -1,6 +1,7 @@
 // A garment at rest: what it is made of, never where it is now.
 //
-// GarmentDescription is what a person edits (garment_file.h); build_garment() turns it into a Garment: flat, immutable arrays.
+// GarmentDescription is what a person edits (garment_file.h); build_garment() turns it into a Garment: flat, immutable
+// arrays.
 #pragma once
 
 #include "rig/math.h"
@@ -14,39 +15,40 @@
 
 namespace tutu::cloth {
 
-/// A rectangle of particles. Row 0 starts at `corner`; columns go along `across`, rows along `down` (both whole edges, m).
+/// A rectangle of particles. Row 0 starts at `corner`; columns go along `across`, rows along `down` (both whole edges,
+/// m).
 struct GridShape {
   int rows = 0, columns = 0;
   Vec3 corner = Vec3::Zero(), across = Vec3::UnitX(), down = -Vec3::UnitY();
 };
 
-/// A rectangle rolled around the body. Ring k is an ellipse about (centre_x, height, centre_z); between rings the profile is a
-/// straight line, and rows are spaced evenly along it.
+/// A rectangle rolled around the body. Ring k is an ellipse about (centre_x, height, centre_z); between rings the
+/// profile is a straight line, and rows are spaced evenly along it.
 struct TubeShape {
   struct Ring {
-    double height = 0.0;                     ///< y, m
-    double radius_x = 0.0, radius_z = 0.0;   ///< half axes, m
-    double centre_x = 0.0, centre_z = 0.0;   ///< m
+    double height = 0.0;                   ///< y, m
+    double radius_x = 0.0, radius_z = 0.0; ///< half axes, m
+    double centre_x = 0.0, centre_z = 0.0; ///< m
   };
   int rows = 0, columns = 0;
   std::vector<Ring> rings; ///< from the first row to the last; at least two
   /// Where the first column runs: the angle from +Z towards +X, rad.
   double start_angle = 0.0;
-  /// Without a value the cloth is woven shut, column 0 next to the last. With one, the first and the last column lie on each other
-  /// and are sewn together from row 0 down to this fraction of the rows; below is a slit.
+  /// Without a value the cloth is woven shut, column 0 next to the last. With one, the first and the last column lie on
+  /// each other and are sewn together from row 0 down to this fraction of the rows; below is a slit.
   std::optional<double> seam;
 };
 
-/// How the cloth answers to being pulled. Stiffnesses are those of the sheet (force per metre of width and unit strain), so that a
-/// finer grid of springs is the same cloth.
+/// How the cloth answers to being pulled. Stiffnesses are those of the sheet (force per metre of width and unit
+/// strain), so that a finer grid of springs is the same cloth.
 struct Fabric {
-  double density = 0.15;   ///< kg/m2
-  double stretch = 40.0;   ///< N/m, along warp and weft
-  double shear = 10.0;     ///< N/m
-  double bend = 2.0;       ///< N/m, of the springs between particles two apart
-  double drag = 0.5;       ///< 1/s: the air takes drag * m * v
+  double density = 0.15;    ///< kg/m2
+  double stretch = 40.0;    ///< N/m, along warp and weft
+  double shear = 10.0;      ///< N/m
+  double bend = 2.0;        ///< N/m, of the springs between particles two apart
+  double drag = 0.5;        ///< 1/s: the air takes drag * m * v
   double thickness = 0.004; ///< full gap of the sheet, m: particles keep half of it from colliders,
-  double clearance = 0.0;   ///< and this much more, m: for skin that proxies leave bare, and for chords between particles
+  double clearance = 0.0; ///< and this much more, m: for skin that proxies leave bare, and for chords between particles
 
   double contact_offset() const { return 0.5 * thickness + clearance; } ///< what particles keep from colliders, m
 };
@@ -97,7 +99,7 @@ struct Garment {
   int rows = 0, columns = 0;
   bool woven_shut = false; ///< column 0 is a neighbour of the last
   std::vector<Vec3> rest_positions;
-  std::vector<double> masses; ///< kg, all > 0
+  std::vector<double> masses;  ///< kg, all > 0
   std::vector<Spring> springs; ///< structural ones first
   int structural_count = 0;
   std::vector<Seam> seams;
@@ -110,8 +112,8 @@ struct Garment {
   int particle_count() const { return static_cast<int>(rest_positions.size()); }
 };
 
-/// Throws InputError when the description cannot be cloth: fewer than 2 x 2 particles, cells without area, an attachment beyond the
-/// rows, a particle pinned twice.
+/// Throws InputError when the description cannot be cloth: fewer than 2 x 2 particles, cells without area, an
+/// attachment beyond the rows, a particle pinned twice.
 Garment build_garment(const GarmentDescription& description);
 
 /// Scales (per axis, about the origin) and then moves the shape: how a garment is put on another body.

@@ -76,7 +76,9 @@ Fabric read_fabric(const JsonValue& json) {
 
 /// "rows": 0 or [0, 2]; negative numbers count from the end.
 void read_range(const JsonValue& json, int& first, int& last) {
-  const auto index = [](const JsonValue& v) { return v.integer_in(-k_most_particles_a_side, k_most_particles_a_side - 1); };
+  const auto index = [](const JsonValue& v) {
+    return v.integer_in(-k_most_particles_a_side, k_most_particles_a_side - 1);
+  };
   if (json.is_array()) {
     const auto ends = json.items();
     if (ends.size() != 2) throw json.error("a number, or [first, last]");

@@ -27,7 +27,8 @@ std::optional<int> add_spring_forces(const Garment& garment, std::span<const Vec
     const Vec3 d = positions[spring.j] - positions[spring.i];
     const double length = d.norm();
     // Written so that a length that is not a number fails too.
-    if (!(length <= (1.0 + k_diverged_stretch) * spring.rest_length) && k < garment.structural_count && !first_bad) first_bad = k;
+    if (!(length <= (1.0 + k_diverged_stretch) * spring.rest_length) && k < garment.structural_count && !first_bad)
+      first_bad = k;
     if (!(length > 0.0)) continue; // two particles in one place: no direction, no force
     const Vec3 force = (spring.stiffness * (length - spring.rest_length) / length) * d;
     forces[spring.i] += force;

@@ -17,17 +17,17 @@ struct FrameInput {
   proxies::SweptColliders colliders;
   std::span<const Vec3> pins_start, pins_end; ///< targets in the order of Garment::pins, world, m
   double seconds = 1.0 / 60.0;
-  int substeps = 5; ///< >= 1
+  int substeps = 5;                 ///< >= 1
   Vec3 gravity = {0.0, -9.81, 0.0}; ///< m/s2
   double extra_drag = 0.0;          ///< 1/s on top of the fabric's: settles a drape
 };
 
 /// A run that cannot be continued: the first bad spring, and the strongest force at that moment.
 struct Divergence {
-  int substep = 0;            ///< of the frame, from 0
-  int particle = 0;           ///< an end of the bad spring
+  int substep = 0;  ///< of the frame, from 0
+  int particle = 0; ///< an end of the bad spring
   Vec3 position = Vec3::Zero();
-  double stretch = 0.0;       ///< length / rest length - 1 of the bad spring; NaN when its length is
+  double stretch = 0.0; ///< length / rest length - 1 of the bad spring; NaN when its length is
   int strongest_particle = 0;
   double strongest_force = 0.0; ///< N
 };
@@ -37,8 +37,9 @@ struct SolverTimes {
   double broad = 0.0, cloth = 0.0, contact = 0.0;
 };
 
-/// forces += those of all springs at `positions`: for spring (i, j), K (|d| - L) d/|d| on i with d = x_j - x_i, the opposite on j. N.
-/// Returns the index of the first structural spring whose length is not within (1 + k_diverged_stretch) of its rest length.
+/// forces += those of all springs at `positions`: for spring (i, j), K (|d| - L) d/|d| on i with d = x_j - x_i, the
+/// opposite on j. N. Returns the index of the first structural spring whose length is not within (1 +
+/// k_diverged_stretch) of its rest length.
 std::optional<int> add_spring_forces(const Garment& garment, std::span<const Vec3> positions, std::span<Vec3> forces);
 
 /// Sum of K (|d| - L)^2 / 2 over all springs, J. The forces are its negative gradient.

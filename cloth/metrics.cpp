@@ -38,12 +38,14 @@ std::vector<double> stretch_of(const Garment& garment, const Particles& particle
   std::vector<double> stretch(garment.structural_count);
   for (int k = 0; k < garment.structural_count; ++k) {
     const Spring& spring = garment.springs[k];
-    stretch[k] = std::abs((particles.positions[spring.j] - particles.positions[spring.i]).norm() / spring.rest_length - 1.0);
+    stretch[k] =
+        std::abs((particles.positions[spring.j] - particles.positions[spring.i]).norm() / spring.rest_length - 1.0);
   }
   return stretch;
 }
 
-std::vector<double> penetration_of(const Garment& garment, const Particles& particles, std::span<const proxies::Capsule> colliders,
+std::vector<double> penetration_of(const Garment& garment, const Particles& particles,
+                                   std::span<const proxies::Capsule> colliders,
                                    const std::optional<proxies::Plane>& ground) {
   const std::vector<std::uint8_t> pinned = pinned_flags(garment);
   std::vector<double> depths;
@@ -59,8 +61,8 @@ std::vector<double> penetration_of(const Garment& garment, const Particles& part
   return depths;
 }
 
-double jitter_of(const Garment& garment, std::span<const Vec3> before_last, std::span<const Vec3> last, std::span<const Vec3> now,
-                 double frame_seconds) {
+double jitter_of(const Garment& garment, std::span<const Vec3> before_last, std::span<const Vec3> last,
+                 std::span<const Vec3> now, double frame_seconds) {
   const std::vector<std::uint8_t> pinned = pinned_flags(garment);
   double sum = 0.0;
   int free = 0;

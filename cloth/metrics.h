@@ -16,7 +16,8 @@ struct Spread {
   double max = 0.0, p99 = 0.0, mean = 0.0;
 };
 
-/// The smallest sample that at least `share` of them do not exceed (nearest rank); 0 for no samples. Reorders `samples`.
+/// The smallest sample that at least `share` of them do not exceed (nearest rank); 0 for no samples. Reorders
+/// `samples`.
 double percentile(std::vector<double>& samples, double share);
 Spread spread(std::vector<double> samples);
 
@@ -24,11 +25,12 @@ Spread spread(std::vector<double> samples);
 std::vector<double> stretch_of(const Garment& garment, const Particles& particles);
 
 /// Depth of every free particle below the nearest collider surface, m, >= 0, over all colliders, closed form.
-std::vector<double> penetration_of(const Garment& garment, const Particles& particles, std::span<const proxies::Capsule> colliders,
+std::vector<double> penetration_of(const Garment& garment, const Particles& particles,
+                                   std::span<const proxies::Capsule> colliders,
                                    const std::optional<proxies::Plane>& ground);
 
 /// Mean |x(f+1) - 2 x(f) + x(f-1)| / frame^2 over free particles, m/s2.
-double jitter_of(const Garment& garment, std::span<const Vec3> before_last, std::span<const Vec3> last, std::span<const Vec3> now,
-                 double frame_seconds);
+double jitter_of(const Garment& garment, std::span<const Vec3> before_last, std::span<const Vec3> last,
+                 std::span<const Vec3> now, double frame_seconds);
 
 } // namespace tutu::cloth

@@ -28,7 +28,7 @@ enum class ProxyKind { sphere, capsule };
 struct Proxy {
   std::string name; ///< unique in its set
   ProxyKind kind = ProxyKind::sphere;
-  Anchor a, b; ///< end points; the same twice for a sphere
+  Anchor a, b;           ///< end points; the same twice for a sphere
   double radius = 0.0;   ///< m, > 0
   double friction = 0.3; ///< Coulomb coefficient against cloth, >= 0
   bool enabled = true;

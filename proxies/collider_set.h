@@ -20,8 +20,8 @@ struct SweptColliders {
   int ground_index() const { return size(); }
 };
 
-/// The colliders at `s` in [0, 1] of the frame: end points move on straight lines; s = 0 and s = 1 give the ends' own bits.
-/// `out` has size() entries.
+/// The colliders at `s` in [0, 1] of the frame: end points move on straight lines; s = 0 and s = 1 give the ends' own
+/// bits. `out` has size() entries.
 void colliders_at(const SweptColliders& colliders, double s, std::span<Capsule> out);
 
 /// Poses proxies from joint transforms. Disabled proxies are left out. Allocates only when built.

@@ -15,8 +15,8 @@
 
 namespace tutu::proxies {
 
-/// Which colliders each point may meet, in compressed rows: those of point i are colliders[begin[i]] .. colliders[begin[i + 1] - 1],
-/// rising. Memory is reused from call to call.
+/// Which colliders each point may meet, in compressed rows: those of point i are colliders[begin[i]] ..
+/// colliders[begin[i + 1] - 1], rising. Memory is reused from call to call.
 struct Candidates {
   std::vector<int> begin; ///< points + 1 entries
   std::vector<int> colliders;
@@ -32,9 +32,11 @@ public:
 
   virtual std::string_view name() const = 0; ///< as on the command line: "fcl", "brute"
 
-  /// For each point every collider whose surface comes within `reach` (m, >= 0) of it at any time of the frame. May hold more, never
-  /// fewer. The ground (index size()) is always a candidate where there is one. Points and colliders must be finite.
-  virtual void find_candidates(const SweptColliders& colliders, std::span<const Vec3> points, double reach, Candidates& out) = 0;
+  /// For each point every collider whose surface comes within `reach` (m, >= 0) of it at any time of the frame. May
+  /// hold more, never fewer. The ground (index size()) is always a candidate where there is one. Points and colliders
+  /// must be finite.
+  virtual void find_candidates(const SweptColliders& colliders, std::span<const Vec3> points, double reach,
+                               Candidates& out) = 0;
 
   /// Puts the colliders where they are now. Same order and count as in find_candidates.
   virtual void place(std::span<const Capsule> colliders, const std::optional<Plane>& ground) = 0;

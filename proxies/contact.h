@@ -9,9 +9,9 @@ namespace tutu::proxies {
 ///   point = closest + distance * normal,   |normal| = 1,   distance < 0 inside.
 /// `normal` points from the collider to the point (out of the solid, also when the point is inside).
 struct Contact {
-  double distance = 0.0;         ///< signed distance of the point from the surface, m
-  Vec3 normal = Vec3::UnitY();   ///< unit
-  Vec3 closest = Vec3::Zero();   ///< nearest point of the surface, world, m
+  double distance = 0.0;       ///< signed distance of the point from the surface, m
+  Vec3 normal = Vec3::UnitY(); ///< unit
+  Vec3 closest = Vec3::Zero(); ///< nearest point of the surface, world, m
 };
 
 } // namespace tutu::proxies

@@ -2,14 +2,16 @@
 //
 //   { "proxies": [
 //     { "name": "head", "sphere": { "joint": "Head", "center": [0, 0.09, 0.01], "radius": 0.095 } },
-//     { "capsule": { "joint": "LeftUpLeg", "a": [0,0,0], "b": [0,-0.4,0], "radius": 0.07 }, "friction": 0.3, "enabled": true },
-//     { "capsule": { "a": { "between": ["LeftUpLeg", "LeftLeg"], "at": 0.5 },
-//                    "b": { "point": [0.1, 0.9, 0], "joints": [["Hips", 0.7], ["LeftUpLeg", 0.3]] }, "radius": 0.07 } } ] }
+//     { "capsule": { "joint": "LeftUpLeg", "a": [0,0,0], "b": [0,-0.4,0], "radius": 0.07 }, "friction": 0.3, "enabled":
+//     true }, { "capsule": { "a": { "between": ["LeftUpLeg", "LeftLeg"], "at": 0.5 },
+//                    "b": { "point": [0.1, 0.9, 0], "joints": [["Hips", 0.7], ["LeftUpLeg", 0.3]] }, "radius": 0.07 } }
+//                    ] }
 //
-// Points are in the frame of `joint` (m); "between" blends two joint origins; "point" is in model space at rest and follows its
-// joints by weight (normalised; at most 4). An end may name its own joint: { "joint": "LeftLeg", "at": [0, 0, 0] }.
-// A sphere's center takes every form that an end takes. The shape's own "joint" is for bare points [x, y, z]: required where
-// there is one, refused where there is none. A capsule with both ends at one point is refused: it is a sphere.
+// Points are in the frame of `joint` (m); "between" blends two joint origins; "point" is in model space at rest and
+// follows its joints by weight (normalised; at most 4). An end may name its own joint: { "joint": "LeftLeg", "at": [0,
+// 0, 0] }. A sphere's center takes every form that an end takes. The shape's own "joint" is for bare points [x, y, z]:
+// required where there is one, refused where there is none. A capsule with both ends at one point is refused: it is a
+// sphere.
 #pragma once
 
 #include "proxies/collider.h"
@@ -19,12 +21,13 @@
 
 namespace tutu::proxies {
 
-/// Throws InputError with file, JSON pointer, found and expected: unknown joint or key, radius <= 0, two proxies with one
-/// name, both or neither shape. A proxy without a name is called after its joint and place in the list.
+/// Throws InputError with file, JSON pointer, found and expected: unknown joint or key, radius <= 0, two proxies with
+/// one name, both or neither shape. A proxy without a name is called after its joint and place in the list.
 std::vector<Proxy> read_proxies(const std::filesystem::path& file, const rig::Skeleton& skeleton);
 
-/// Writes what read_proxies reads back (to 1e-15): anchors on one joint as joint points, blends of two origins as "between",
-/// others as points with weights. Throws std::invalid_argument, before it touches the file, on proxies that no file can say.
+/// Writes what read_proxies reads back (to 1e-15): anchors on one joint as joint points, blends of two origins as
+/// "between", others as points with weights. Throws std::invalid_argument, before it touches the file, on proxies that
+/// no file can say.
 void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& proxies, const rig::Skeleton& skeleton);
 
 } // namespace tutu::proxies

@@ -27,8 +27,8 @@ struct JointKey {
 /// The clip as a person edits it, independent of any skeleton. What runs is a Clip.
 struct RawClip {
   struct Key {
-    double time = 0.0; ///< s
-    std::string name;  ///< for people: "arabesque"; may be empty
+    double time = 0.0;                      ///< s
+    std::string name;                       ///< for people: "arabesque"; may be empty
     std::map<std::string, JointKey> joints; ///< by joint name
   };
   std::string file; ///< where it came from, for messages
@@ -37,8 +37,8 @@ struct RawClip {
   std::vector<Key> keys; ///< strictly rising times
 };
 
-/// Throws InputError (naming `raw.file` and the key) on no keys, on times that do not strictly rise, on non-finite numbers, on a
-/// rotation that is not unit to 1e-6.
+/// Throws InputError (naming `raw.file` and the key) on no keys, on times that do not strictly rise, on non-finite
+/// numbers, on a rotation that is not unit to 1e-6.
 void check(const RawClip& raw);
 
 /// Key poses for one skeleton: flat, immutable, dense.
@@ -46,27 +46,29 @@ struct Clip {
   std::string name;
   Extrapolation extrapolation = Extrapolation::loop;
   int joint_count = 0;
-  std::vector<double> times;            ///< s, strictly rising, at least one
-  std::vector<Transform> local;         ///< [key * joint_count + joint], parent_from_joint
+  std::vector<double> times;    ///< s, strictly rising, at least one
+  std::vector<Transform> local; ///< [key * joint_count + joint], parent_from_joint
 
   double duration() const { return times.back() - times.front(); }
-  std::span<const Transform> key(int k) const { return {local.data() + static_cast<std::size_t>(k) * joint_count, static_cast<std::size_t>(joint_count)}; }
+  std::span<const Transform> key(int k) const {
+    return {local.data() + static_cast<std::size_t>(k) * joint_count, static_cast<std::size_t>(joint_count)};
+  }
 };
 
-/// Puts a raw clip on a skeleton. Joint names are matched by Skeleton::find. Throws InputError as check() does, on a joint the
-/// skeleton lacks, and on two names for one joint in one key.
+/// Puts a raw clip on a skeleton. Joint names are matched by Skeleton::find. Throws InputError as check() does, on a
+/// joint the skeleton lacks, and on two names for one joint in one key.
 Clip build_clip(const RawClip& raw, const Skeleton& skeleton);
 
 /// The pose at `time` (s): translations LERP, rotations nlerp along the shorter arc, between the two keys around it.
 /// Always the same pose for the same time; `local` has joint_count entries. Allocates nothing.
 void sample(const Clip& clip, double time, std::span<Transform> local);
 
-/// A clip made for `source` played by `target`: joints paired by name. For each pair the source's rotation away from its
-/// rest pose, seen in model space, is applied to the target's rest pose, whose bone was first turned to point as the source's
-/// bone does (so an A-pose can follow a T-pose; joints where pairs branch or end turn with the one above). Joints without a
-/// partner keep their rest pose. Translations of the topmost
-/// paired joint are scaled by the ratio of its rest heights; other translations are the target's own.
-/// Throws InputError when no joint pairs. `unmatched` (may be null) receives the source joints without a partner.
+/// A clip made for `source` played by `target`: joints paired by name. For each pair the source's rotation away from
+/// its rest pose, seen in model space, is applied to the target's rest pose, whose bone was first turned to point as
+/// the source's bone does (so an A-pose can follow a T-pose; joints where pairs branch or end turn with the one above).
+/// Joints without a partner keep their rest pose. Translations of the topmost paired joint are scaled by the ratio of
+/// its rest heights; other translations are the target's own. Throws InputError when no joint pairs. `unmatched` (may
+/// be null) receives the source joints without a partner.
 Clip retarget(const Clip& clip, const Skeleton& source, const Skeleton& target, std::vector<std::string>* unmatched);
 
 } // namespace tutu::rig

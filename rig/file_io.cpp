@@ -33,7 +33,8 @@ std::string read_file(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) throw InputError(file.string(), "", "no such file", "a readable file");
-  if (!fs::is_regular_file(status)) throw InputError(file.string(), "", "something that is not a file", "a readable file");
+  if (!fs::is_regular_file(status))
+    throw InputError(file.string(), "", "something that is not a file", "a readable file");
   const std::uintmax_t size = fs::file_size(file, error);
   if (!error && size > k_largest_input)
     throw InputError(file.string(), "", std::to_string(size) + " bytes", "at most 1 GiB");
@@ -49,7 +50,8 @@ std::string read_file(const fs::path& file) {
 }
 
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
-  // Hidden, in the same folder (a rename must not cross file systems), with the extension kept for tools that look at it.
+  // Hidden, in the same folder (a rename must not cross file systems), with the extension kept for tools that look at
+  // it.
   temporary_ = target_.parent_path() / ("." + target_.stem().string() + "." + std::to_string(::getpid()) + ".part" +
                                         target_.extension().string());
 }

@@ -7,6 +7,7 @@
 #include "rig/character.h"
 
 #include <Eigen/Geometry>
+#include <assimp/matrix4x4.h>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -23,6 +24,8 @@ namespace tutu::rig::import_detail {
 
 using Matrix3 = Eigen::Matrix3d;
 using Affine = Eigen::Affine3d;
+
+Affine affine_of(const aiMatrix4x4& matrix);
 
 /// A file read by assimp, triangulated, every index in range.
 struct Source {

@@ -131,6 +131,8 @@ void read_conventions(const std::string& extension, Source& source) {
   }
 }
 
+} // namespace
+
 Affine affine_of(const aiMatrix4x4& m) {
   Affine result = Affine::Identity();
   for (int r = 0; r < 3; ++r)
@@ -138,8 +140,6 @@ Affine affine_of(const aiMatrix4x4& m) {
       result(r, c) = static_cast<double>(m[static_cast<unsigned>(r)][static_cast<unsigned>(c)]);
   return result;
 }
-
-} // namespace
 
 std::uintmax_t check_acceptable(const fs::path& file) {
   std::error_code error;

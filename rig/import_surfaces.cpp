@@ -14,14 +14,6 @@ namespace {
 
 constexpr unsigned k_most_vertices = 20'000'000;
 
-Affine affine_of(const aiMatrix4x4& m) {
-  Affine result = Affine::Identity();
-  for (int r = 0; r < 3; ++r)
-    for (int c = 0; c < 4; ++c)
-      result(r, c) = static_cast<double>(m[static_cast<unsigned>(r)][static_cast<unsigned>(c)]);
-  return result;
-}
-
 std::string name_of(const aiMesh& mesh, unsigned index) {
   return mesh.mName.length > 0 ? mesh.mName.C_Str() : "mesh " + std::to_string(index + 1);
 }

@@ -61,7 +61,8 @@ JsonValue JsonValue::parse(std::string_view text, std::string name) {
     if (event == json::parse_event_t::object_start) open_objects.emplace_back();
     if (event == json::parse_event_t::object_end) open_objects.pop_back();
     if (event == json::parse_event_t::key && !open_objects.back().insert(parsed.get<std::string>()).second)
-      throw InputError(document->file, "key \"" + parsed.get<std::string>() + "\"", "it twice in one object", "it once");
+      throw InputError(document->file, "key \"" + parsed.get<std::string>() + "\"", "it twice in one object",
+                       "it once");
     return true;
   };
   try {

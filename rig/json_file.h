@@ -19,7 +19,8 @@ namespace tutu {
 /// its values does. All functions throw InputError on a value of another type than asked.
 class JsonValue {
 public:
-  /// Parses `file`. Throws InputError with line and column on a syntax error, on a key given twice, and on an empty file.
+  /// Parses `file`. Throws InputError with line and column on a syntax error, on a key given twice, and on an empty
+  /// file.
   static JsonValue read(const std::filesystem::path& file);
   /// The same from text; `name` stands for the file in messages.
   static JsonValue parse(std::string_view text, std::string name);
@@ -28,9 +29,9 @@ public:
   const std::string& pointer() const { return pointer_; } ///< "" for the whole file
 
   bool has(const char* key) const;
-  JsonValue at(const char* key) const;                      ///< required member of an object
-  std::optional<JsonValue> find(const char* key) const;     ///< optional member of an object
-  std::vector<JsonValue> items() const;                     ///< elements of an array
+  JsonValue at(const char* key) const;                            ///< required member of an object
+  std::optional<JsonValue> find(const char* key) const;           ///< optional member of an object
+  std::vector<JsonValue> items() const;                           ///< elements of an array
   std::vector<std::pair<std::string, JsonValue>> members() const; ///< members of an object, in key order
 
   /// An object whose every key is one of these ("$schema" and "comment" are always welcome).
@@ -46,7 +47,7 @@ public:
   double non_negative() const; ///< >= 0
   int integer_in(int lowest, int highest) const;
   Vec3 vec3() const;
-  std::vector<double> numbers() const;                 ///< any length
+  std::vector<double> numbers() const;                  ///< any length
   std::vector<double> numbers(std::size_t count) const; ///< exactly `count`
   /// [x, y, z, w]; normalised; throws when its length is not within 1e-3 of 1.
   Quat rotation() const;
@@ -58,7 +59,7 @@ public:
   bool is_boolean() const { return node_->is_boolean(); }
 
   /// The error to throw when this value reads well but cannot be (an unknown joint, say).
-  InputError error(std::string expected) const;                    ///< found = the value itself, shortened
+  InputError error(std::string expected) const; ///< found = the value itself, shortened
   InputError error(std::string found, std::string expected) const;
 
 private:

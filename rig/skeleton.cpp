@@ -10,19 +10,20 @@ namespace tutu::rig {
 namespace {
 
 bool same_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
 } // namespace
 
 std::string_view bare_joint_name(std::string_view name) {
   if (const std::size_t colon = name.rfind(':'); colon != std::string_view::npos) return name.substr(colon + 1);
-  constexpr std::string_view k_mixamo = "mixamorig"; // exporters that cannot write ':' give "mixamorig_" or "mixamorig1_"
+  constexpr std::string_view k_mixamo =
+      "mixamorig"; // exporters that cannot write ':' give "mixamorig_" or "mixamorig1_"
   if (name.starts_with(k_mixamo)) {
     std::size_t start = k_mixamo.size();
-    while (start < name.size() && (std::isdigit(static_cast<unsigned char>(name[start])) || name[start] == '_')) ++start;
+    while (start < name.size() && (std::isdigit(static_cast<unsigned char>(name[start])) || name[start] == '_'))
+      ++start;
     if (start < name.size()) return name.substr(start);
   }
   return name;

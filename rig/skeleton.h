@@ -15,9 +15,9 @@ inline constexpr int k_no_parent = -1;
 
 /// A tree of joints in flat arrays, parent before child. Immutable once built; a pose is kept apart (rig/pose.h).
 struct Skeleton {
-  std::vector<std::string> names;     ///< unique
-  std::vector<int> parents;           ///< index of the parent joint, smaller than the child's; k_no_parent for roots
-  std::vector<Transform> rest_local;  ///< parent_from_joint in the rest pose; m
+  std::vector<std::string> names;    ///< unique
+  std::vector<int> parents;          ///< index of the parent joint, smaller than the child's; k_no_parent for roots
+  std::vector<Transform> rest_local; ///< parent_from_joint in the rest pose; m
 
   int joint_count() const { return static_cast<int>(names.size()); }
 
@@ -32,7 +32,8 @@ struct Skeleton {
 /// A joint name without its namespace: what follows the last ':', or "mixamorig" and its digits and '_' cut off.
 std::string_view bare_joint_name(std::string_view name);
 
-/// model_from_joint of every joint, from the local transforms (parent_from_joint). All spans have joint_count() entries.
+/// model_from_joint of every joint, from the local transforms (parent_from_joint). All spans have joint_count()
+/// entries.
 void model_from_local(const Skeleton& skeleton, std::span<const Transform> local, std::span<Transform> model);
 
 /// The inverse of model_from_local.

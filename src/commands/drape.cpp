@@ -37,12 +37,13 @@ int run(const Options& options) {
   }
   cloth::Drape saved;
   saved.fingerprint = drape_fingerprint(scene);
-  for (std::size_t g = 0; g < scene.garments.size(); ++g) saved.garments.push_back({scene.garments[g].name, result.positions[g]});
+  for (std::size_t g = 0; g < scene.garments.size(); ++g)
+    saved.garments.push_back({scene.garments[g].name, result.positions[g]});
   const std::filesystem::path file = options.out.empty() ? scene.description.drape : std::filesystem::path(options.out);
   cloth::write_drape(saved, file);
   const bool settled = result.fastest < cloth::k_settled_speed;
-  fmt::print("{}: {} after {:.1f} s, the fastest particle at {:.1f} mm/s\n", file.string(), settled ? "settled" : "not quite settled",
-             result.seconds, 1000.0 * result.fastest);
+  fmt::print("{}: {} after {:.1f} s, the fastest particle at {:.1f} mm/s\n", file.string(),
+             settled ? "settled" : "not quite settled", result.seconds, 1000.0 * result.fastest);
   return k_ok;
 }
 
@@ -53,7 +54,9 @@ void add_drape(CLI::App& app, int& status) {
   auto options = std::make_shared<Options>();
   options->scene.add_to(*command);
   command->add_option("-o,--out", options->out, "File to write, in place of the scene's own (SCENE.drape.json)");
-  command->add_option("--seconds", options->seconds, "Longest simulated time")->check(CLI::Range(0.1, 600.0))->capture_default_str();
+  command->add_option("--seconds", options->seconds, "Longest simulated time")
+      ->check(CLI::Range(0.1, 600.0))
+      ->capture_default_str();
   command->callback([options, &status] { status = run(*options); });
 }
 

@@ -64,7 +64,8 @@ void print_import(const rig::Import& import) {
   fmt::print("  height      {:.3f} m\n", report.height);
   fmt::print("  meshes      {} in the file, {} part{} kept\n", report.file_meshes, character.mesh.parts.size(),
              character.mesh.parts.size() == 1 ? "" : "s");
-  fmt::print("  skeletons   {} in the file{}\n", report.file_skeletons, report.file_skeletons > 1 ? ", put in common" : "");
+  fmt::print("  skeletons   {} in the file{}\n", report.file_skeletons,
+             report.file_skeletons > 1 ? ", put in common" : "");
   fmt::print("  joints      {}, {} of them without skin\n", character.skeleton.joint_count(),
              report.joints_without_weight);
   fmt::print("  vertices    {} in the file, {} welded\n", report.file_vertices, character.mesh.vertex_count());

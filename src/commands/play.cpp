@@ -36,15 +36,16 @@ struct Options {
 /// "1280x720" -> {1280, 720}.
 std::pair<int, int> size_of(const std::string& text) {
   int width = 0, height = 0, used = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) || width < 16 ||
-      height < 16 || width > 8192 || height > 8192)
+  if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) ||
+      width < 16 || height < 16 || width > 8192 || height > 8192)
     throw InputError("", "--size", text, "WIDTHxHEIGHT, each from 16 to 8192");
   return {width, height};
 }
 
 const std::vector<std::pair<std::string, bool Layers::*>> k_layers = {
-    {"body", &Layers::body},           {"cloth", &Layers::cloth},       {"ground", &Layers::ground},   {"wireframe", &Layers::wireframe},
-    {"particles", &Layers::particles}, {"skeleton", &Layers::skeleton}, {"proxies", &Layers::proxies},
+    {"body", &Layers::body},           {"cloth", &Layers::cloth},         {"ground", &Layers::ground},
+    {"wireframe", &Layers::wireframe}, {"particles", &Layers::particles}, {"skeleton", &Layers::skeleton},
+    {"proxies", &Layers::proxies},
 };
 
 std::vector<std::string> layer_names() {
@@ -67,12 +68,14 @@ Layers layers_of(const Options& options) {
 /// Where the pictures of a run go: a film, numbered PNGs, chosen PNGs, or nowhere.
 class Pictures {
 public:
-  Pictures(const Options& options, const Scene& scene) : at_(options.at), stem_(scene.name()), layers_(layers_of(options)) {
+  Pictures(const Options& options, const Scene& scene)
+      : at_(options.at), stem_(scene.name()), layers_(layers_of(options)) {
     if (options.no_pictures) return;
     const auto [width, height] = size_of(options.size);
     offscreen_.emplace(OffscreenOptions{width, height, options.supersample});
     const auto radians = [](double degrees) { return static_cast<float>(degrees * std::numbers::pi / 180.0); };
-    camera_ = frame_camera(motion_points(scene), radians(options.yaw_degrees), radians(options.pitch_degrees), offscreen_->aspect());
+    camera_ = frame_camera(motion_points(scene), radians(options.yaw_degrees), radians(options.pitch_degrees),
+                           offscreen_->aspect());
     view_.emplace(scene);
 
     out_ = options.out;
@@ -80,7 +83,8 @@ public:
     if (out_.empty()) out_ = film ? stem_ + ".mp4" : at_.empty() ? stem_ + "-frames" : ".";
     if (film) video_.emplace(out_, width, height, scene.description.frames_per_second);
     else fs::create_directories(out_);
-    if (!film && at_.empty() && options.out.empty()) fmt::print(stderr, "note: no ffmpeg here, so the frames go to {}/\n", out_.string());
+    if (!film && at_.empty() && options.out.empty())
+      fmt::print(stderr, "note: no ffmpeg here, so the frames go to {}/\n", out_.string());
   }
 
   void add(Session& session) {
@@ -115,7 +119,8 @@ private:
 int play_headless(const Options& options, const Scene& scene, const std::vector<std::vector<Vec3>>& start) {
   Session session(scene);
   session.start(start);
-  const int whole = std::max(1, static_cast<int>(std::lround(scene.clip.duration() * scene.description.frames_per_second)));
+  const int whole =
+      std::max(1, static_cast<int>(std::lround(scene.clip.duration() * scene.description.frames_per_second)));
   int frames = options.frames.value_or(whole);
   if (!options.frames && !options.at.empty()) frames = *std::max_element(options.at.begin(), options.at.end());
 
@@ -162,16 +167,27 @@ void add_play(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("play", "Play a scene in a window, or render it without one");
   auto options = std::make_shared<Options>();
   options->scene.add_to(*command);
-  command->add_flag("--headless", options->headless, "No window: render to a film (.mp4), or PNGs where there is no ffmpeg");
-  command->add_option("--frames", options->frames, "Frames to play; once through the motion when left out")->check(CLI::Range(1, 10000000));
+  command->add_flag("--headless", options->headless,
+                    "No window: render to a film (.mp4), or PNGs where there is no ffmpeg");
+  command->add_option("--frames", options->frames, "Frames to play; once through the motion when left out")
+      ->check(CLI::Range(1, 10000000));
   command->add_option("-o,--out", options->out, "Film (.mp4) or folder for PNGs");
   command->add_option("--json", options->json, "Write the figures of the run to this file (implies --headless)");
-  command->add_option("--at", options->at, "Only pictures of these frames, as PNG (implies --headless)")->delimiter(',')->check(CLI::NonNegativeNumber);
-  command->add_option("--show", options->show, "Layers to show besides the usual")->delimiter(',')->check(CLI::IsMember(layer_names()));
-  command->add_option("--hide", options->hide, "Layers not to show")->delimiter(',')->check(CLI::IsMember(layer_names()));
+  command->add_option("--at", options->at, "Only pictures of these frames, as PNG (implies --headless)")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber);
+  command->add_option("--show", options->show, "Layers to show besides the usual")
+      ->delimiter(',')
+      ->check(CLI::IsMember(layer_names()));
+  command->add_option("--hide", options->hide, "Layers not to show")
+      ->delimiter(',')
+      ->check(CLI::IsMember(layer_names()));
   command->add_option("--size", options->size, "Pixels of the pictures")->capture_default_str();
-  command->add_option("--supersample", options->supersample, "Draw this many times finer and average")->check(CLI::Range(1, 4))->capture_default_str();
-  command->add_option("--yaw", options->yaw_degrees, "Camera: degrees around the dancer, 0 from the front")->capture_default_str();
+  command->add_option("--supersample", options->supersample, "Draw this many times finer and average")
+      ->check(CLI::Range(1, 4))
+      ->capture_default_str();
+  command->add_option("--yaw", options->yaw_degrees, "Camera: degrees around the dancer, 0 from the front")
+      ->capture_default_str();
   command->add_option("--pitch", options->pitch_degrees, "Camera: degrees from above")->capture_default_str();
   command->add_flag("--no-pictures", options->no_pictures, "Simulate only (with --headless or --json)");
   command->callback([options, &status] { status = run(*options); });

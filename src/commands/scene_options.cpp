@@ -11,11 +11,13 @@ namespace tutu::app {
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("scene", scene, "Scene file (.json); the shipped dance when left out");
   command.add_option("--substeps", substeps, "Substeps a frame, in place of the scene's")->check(CLI::Range(1, 10000));
-  command.add_option("--backend", backend, "How particles ask colliders, in place of the scene's")->check(CLI::IsMember({"fcl", "brute"}));
+  command.add_option("--backend", backend, "How particles ask colliders, in place of the scene's")
+      ->check(CLI::IsMember({"fcl", "brute"}));
 }
 
 Scene SceneOptions::load() const {
-  const std::filesystem::path file = scene.empty() ? assets_folder() / "scenes" / "dance.json" : std::filesystem::path(scene);
+  const std::filesystem::path file =
+      scene.empty() ? assets_folder() / "scenes" / "dance.json" : std::filesystem::path(scene);
   SceneDescription description = read_scene(file);
   if (substeps) description.substeps = *substeps;
   if (backend) description.backend = *backend == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;

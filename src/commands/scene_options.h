@@ -21,8 +21,8 @@ struct SceneOptions {
   Scene load() const;
 };
 
-/// The draped start of a scene: its saved drape where that fits, else garments settled now (with a progress bar; the file is left
-/// alone). Nothing when the drape diverged or was interrupted; the reason has been printed.
+/// The draped start of a scene: its saved drape where that fits, else garments settled now (with a progress bar; the
+/// file is left alone). Nothing when the drape diverged or was interrupted; the reason has been printed.
 std::optional<std::vector<std::vector<Vec3>>> draped_start(const Scene& scene);
 
 } // namespace tutu::app

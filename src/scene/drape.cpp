@@ -9,7 +9,8 @@ namespace tutu::app {
 namespace {
 
 constexpr double k_pose_seconds = 1.0; ///< s from the rest pose to the first pose; slow enough for cloth to follow
-constexpr double k_drape_drag = 4.0;   ///< 1/s; near critical for a skirt's swing (about 1 Hz), so that it settles without ringing
+constexpr double k_drape_drag =
+    4.0; ///< 1/s; near critical for a skirt's swing (about 1 Hz), so that it settles without ringing
 
 double fastest_of(const Session& session) {
   double fastest = 0.0;
@@ -45,11 +46,13 @@ DrapeResult drape(const Scene& scene, double longest, const std::function<bool(i
 }
 
 std::uint64_t drape_fingerprint(const Scene& scene) {
-  // Everything becomes numbers, and numbers become a hash: as good as comparing the files, and blind to their layout. Rounded far
-  // below any length that matters: another processor's sine may differ in its last bit.
+  // Everything becomes numbers, and numbers become a hash: as good as comparing the files, and blind to their layout.
+  // Rounded far below any length that matters: another processor's sine may differ in its last bit.
   cloth::Particles numbers;
   const auto rounded = [](double v) { return std::round(v * 1e8); };
-  const auto add = [&](double a, double b = 0.0, double c = 0.0) { numbers.positions.emplace_back(rounded(a), rounded(b), rounded(c)); };
+  const auto add = [&](double a, double b = 0.0, double c = 0.0) {
+    numbers.positions.emplace_back(rounded(a), rounded(b), rounded(c));
+  };
   const auto add_point = [&](const Vec3& p) { add(p.x(), p.y(), p.z()); };
   for (const cloth::Garment& garment : scene.garments) {
     for (const Vec3& p : garment.rest_positions) add_point(p);

@@ -27,7 +27,8 @@ void RunStats::add(const Session& session) {
     for (const double stretch : cloth::stretch_of(garment, particles)) stretches_.push_back(stretch);
     History& history = history_[g];
     if (frames_ >= 2)
-      jitters_.push_back(cloth::jitter_of(garment, history.before_last, history.last, particles.positions, session.frame_seconds()));
+      jitters_.push_back(
+          cloth::jitter_of(garment, history.before_last, history.last, particles.positions, session.frame_seconds()));
     history.before_last.swap(history.last);
     history.last = particles.positions;
   }
@@ -37,7 +38,8 @@ void RunStats::add(const Session& session) {
 nlohmann::json RunStats::json(const Session& session) const {
   nlohmann::json ms;
   for (const Stage& stage : stages_) ms[stage.name] = {{"median", median_of(stage.ms)}, {"p99", p99_of(stage.ms)}};
-  const auto inside = std::count_if(depths_mm_.begin(), depths_mm_.end(), [](double mm) { return mm > 1000.0 * k_inside_depth; });
+  const auto inside =
+      std::count_if(depths_mm_.begin(), depths_mm_.end(), [](double mm) { return mm > 1000.0 * k_inside_depth; });
   nlohmann::json result = {
       {"scene", scene_->name()},
       {"frames", frames_},
@@ -61,17 +63,20 @@ nlohmann::json RunStats::json(const Session& session) const {
 std::string RunStats::text(const Session& session) const {
   int particles = 0;
   for (const cloth::Garment& garment : scene_->garments) particles += garment.particle_count();
-  std::string text = fmt::format("{}: {} frames ({:.2f} s), {} garments of {} particles, {} proxies ({}), {} substeps a frame\n",
-                                 scene_->name(), frames_, frames_ * session.frame_seconds(), scene_->garments.size(), particles,
-                                 session.colliders().size(), session.backend(), scene_->description.substeps);
+  std::string text =
+      fmt::format("{}: {} frames ({:.2f} s), {} garments of {} particles, {} proxies ({}), {} substeps a frame\n",
+                  scene_->name(), frames_, frames_ * session.frame_seconds(), scene_->garments.size(), particles,
+                  session.colliders().size(), session.backend(), scene_->description.substeps);
   if (frames_ == 0) return text;
   text += "ms a frame, median (p99):";
-  for (const Stage& stage : stages_) text += fmt::format("  {} {:.3f} ({:.3f})", stage.name, median_of(stage.ms), p99_of(stage.ms));
+  for (const Stage& stage : stages_)
+    text += fmt::format("  {} {:.3f} ({:.3f})", stage.name, median_of(stage.ms), p99_of(stage.ms));
   const cloth::Spread depth = cloth::spread(depths_mm_), stretch = cloth::spread(stretches_);
-  text += fmt::format("\ninto proxies: {:.2f} mm at most, {:.3f} mean   stretch: {:.1f} % at most, {:.1f} p99, {:.1f} mean   "
-                      "jitter: {:.2f} m/s2\nstate hash {:016x}\n",
-                      depth.max, depth.mean, 100 * stretch.max, 100 * stretch.p99, 100 * stretch.mean, cloth::spread(jitters_).mean,
-                      session.state_hash());
+  text += fmt::format(
+      "\ninto proxies: {:.2f} mm at most, {:.3f} mean   stretch: {:.1f} % at most, {:.1f} p99, {:.1f} mean   "
+      "jitter: {:.2f} m/s2\nstate hash {:016x}\n",
+      depth.max, depth.mean, 100 * stretch.max, 100 * stretch.p99, 100 * stretch.mean, cloth::spread(jitters_).mean,
+      session.state_hash());
   return text;
 }
 

@@ -10,8 +10,8 @@
 
 namespace tutu::app {
 
-/// A particle counts as inside a proxy when it is deeper than this, m: above the rounding of a projection (1e-15), below any
-/// depth that could be seen.
+/// A particle counts as inside a proxy when it is deeper than this, m: above the rounding of a projection (1e-15),
+/// below any depth that could be seen.
 inline constexpr double k_inside_depth = 1e-6;
 
 /// Collects after each frame; measures outside the timings.
@@ -36,7 +36,8 @@ private:
   };
 
   const Scene* scene_;
-  std::vector<Stage> stages_ = {{"pose", {}}, {"proxies", {}}, {"broad", {}}, {"cloth", {}}, {"contact", {}}, {"skin", {}}, {"total", {}}};
+  std::vector<Stage> stages_ = {{"pose", {}},    {"proxies", {}}, {"broad", {}}, {"cloth", {}},
+                                {"contact", {}}, {"skin", {}},    {"total", {}}};
   std::vector<double> depths_mm_, stretches_, jitters_;
   std::vector<History> history_;
   int frames_ = 0;

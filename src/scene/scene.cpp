@@ -21,7 +21,8 @@ rig::Clip clip_for(const ClipMotion& motion, const rig::Skeleton& skeleton, std:
   std::vector<std::string> unmatched;
   rig::Clip clip = rig::retarget(rig::build_clip(raw, source), source, skeleton, &unmatched);
   if (!unmatched.empty())
-    notes.push_back(fmt::format("{}: no joint here for {}", motion.clip.filename().string(), fmt::join(unmatched, ", ")));
+    notes.push_back(
+        fmt::format("{}: no joint here for {}", motion.clip.filename().string(), fmt::join(unmatched, ", ")));
   return clip;
 }
 
@@ -64,14 +65,16 @@ Scene load_scene(const SceneDescription& description) {
   Scene scene;
   scene.description = description;
   rig::Import import = rig::import_character(description.character, {description.max_influences});
-  for (const std::string& note : import.report.notes) scene.notes.push_back(description.character.filename().string() + ": " + note);
+  for (const std::string& note : import.report.notes)
+    scene.notes.push_back(description.character.filename().string() + ": " + note);
   scene.clip = load_motion(description, import, scene.notes);
   scene.character = std::move(import.character);
 
   const rig::Skeleton& skeleton = scene.character.skeleton;
   if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, skeleton);
   for (const GarmentEntry& entry : description.garments) {
-    cloth::Garment garment = cloth::build_garment(cloth::fitted(cloth::read_garment(entry.file), entry.scale, entry.offset));
+    cloth::Garment garment =
+        cloth::build_garment(cloth::fitted(cloth::read_garment(entry.file), entry.scale, entry.offset));
     std::vector<int> joints;
     for (std::size_t a = 0; a < garment.attachments.size(); ++a) {
       const std::string& name = garment.attachments[a].joint;
@@ -98,7 +101,8 @@ fs::path assets_folder() {
     const fs::path folder = (program.parent_path() / relative).lexically_normal();
     if (fs::is_directory(folder, error)) return folder;
   }
-  throw InputError("", "assets", "none beside " + program.string(), "an installed program, a checkout, or $TUTU_ASSETS");
+  throw InputError("", "assets", "none beside " + program.string(),
+                   "an installed program, a checkout, or $TUTU_ASSETS");
 }
 
 } // namespace tutu::app

@@ -26,8 +26,8 @@ struct Scene {
 /// Reads everything a description names. Throws InputError.
 Scene load_scene(const SceneDescription& description);
 
-/// The folder of the shipped assets: $TUTU_ASSETS, else share/tutu/assets beside an installed program, else assets/ of the checkout
-/// the program was built in. Throws InputError when none of them is there.
+/// The folder of the shipped assets: $TUTU_ASSETS, else share/tutu/assets beside an installed program, else assets/ of
+/// the checkout the program was built in. Throws InputError when none of them is there.
 std::filesystem::path assets_folder();
 
 } // namespace tutu::app

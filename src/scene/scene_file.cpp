@@ -32,7 +32,8 @@ Motion read_motion(const JsonValue& json) {
     return OwnMotion{animation->integer_in(0, 1 << 20)};
   }
   texts->only_keys({"translations", "rotations", "times", "joints"});
-  rig::ThreeTexts files{path_in(texts->at("translations")), path_in(texts->at("rotations")), path_in(texts->at("times")), {}};
+  rig::ThreeTexts files{
+      path_in(texts->at("translations")), path_in(texts->at("rotations")), path_in(texts->at("times")), {}};
   if (const auto joints = texts->find("joints")) files.joints = path_in(*joints);
   return files;
 }
@@ -89,7 +90,8 @@ SceneDescription read_scene(const fs::path& file) {
   if (const auto collision = json.find("collision")) {
     collision->only_keys({"backend"});
     if (const auto backend = collision->find("backend"))
-      scene.backend = backend->string_among({"fcl", "brute"}) == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
+      scene.backend =
+          backend->string_among({"fcl", "brute"}) == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
   }
   if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);
   else scene.drape = fs::path(file).replace_extension(".drape.json");

@@ -25,8 +25,8 @@ using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts>;
 
 struct GarmentEntry {
   std::filesystem::path file;
-  Vec3 scale = Vec3::Ones();   ///< per axis, about the model's origin
-  Vec3 offset = Vec3::Zero();  ///< m, after the scale
+  Vec3 scale = Vec3::Ones();  ///< per axis, about the model's origin
+  Vec3 offset = Vec3::Zero(); ///< m, after the scale
 };
 
 /// A scene as authored.

@@ -26,7 +26,8 @@ void add_skeleton(const Session& session, FrameView& view) {
   const auto joints = session.world_from_joint();
   for (int j = 0; j < skeleton.joint_count(); ++j)
     if (const int parent = skeleton.parents[j]; parent != rig::k_no_parent)
-      view.lines.push_back({joints[parent].translation.cast<float>(), joints[j].translation.cast<float>(), k_vermilion});
+      view.lines.push_back(
+          {joints[parent].translation.cast<float>(), joints[j].translation.cast<float>(), k_vermilion});
 }
 
 void add_proxies(const Session& session, FrameView& view) {
@@ -89,7 +90,8 @@ std::vector<Vec3f> motion_points(const Scene& scene) {
     rig::model_from_local(skeleton, local, model);
     for (const Transform& joint : model)
       for (int axis = 0; axis < 3; ++axis)
-        for (const double side : {-k_flesh, k_flesh}) points.push_back((joint.translation + side * Vec3::Unit(axis)).cast<float>());
+        for (const double side : {-k_flesh, k_flesh})
+          points.push_back((joint.translation + side * Vec3::Unit(axis)).cast<float>());
   }
   return points;
 }

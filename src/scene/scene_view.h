@@ -13,8 +13,8 @@ class SceneView {
 public:
   explicit SceneView(const Scene& scene);
 
-  /// The session's present frame. With layers.body the body must have been skinned. The spans are good until the next call, and
-  /// as long as the session stays as it is.
+  /// The session's present frame. With layers.body the body must have been skinned. The spans are good until the next
+  /// call, and as long as the session stays as it is.
   FrameView frame(const Session& session, const Layers& layers);
 
 private:
@@ -22,7 +22,8 @@ private:
   std::vector<Vec3f> particles_;
 };
 
-/// Points (m) around all places the scene's joints go to over the whole clip, with room for flesh and cloth: what a camera must show.
+/// Points (m) around all places the scene's joints go to over the whole clip, with room for flesh and cloth: what a
+/// camera must show.
 std::vector<Vec3f> motion_points(const Scene& scene);
 
 } // namespace tutu::app

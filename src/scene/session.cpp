@@ -29,10 +29,11 @@ std::optional<proxies::Plane> ground_of(const SceneDescription& description) {
 
 std::string SessionFailure::message() const {
   const Vec3& p = divergence.position;
-  return fmt::format("{} diverged in frame {} (t = {:.4f} s, substep {}): an edge at particle {} ({:.3f}, {:.3f}, {:.3f}) is stretched by "
+  return fmt::format("{} diverged in frame {} (t = {:.4f} s, substep {}): an edge at particle {} ({:.3f}, {:.3f}, "
+                     "{:.3f}) is stretched by "
                      "{:.0f} %; the largest force is {:.3g} N on particle {}",
-                     garment, frame, time, divergence.substep, divergence.particle, p.x(), p.y(), p.z(), 100.0 * divergence.stretch,
-                     divergence.strongest_force, divergence.strongest_particle);
+                     garment, frame, time, divergence.substep, divergence.particle, p.x(), p.y(), p.z(),
+                     100.0 * divergence.stretch, divergence.strongest_force, divergence.strongest_particle);
 }
 
 Session::Session(const Scene& scene)

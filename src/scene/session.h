@@ -17,7 +17,7 @@ struct FrameTimes {
   double pose = 0.0;    ///< sampling and forward kinematics
   double proxies = 0.0; ///< colliders and pins
   double broad = 0.0, cloth = 0.0, contact = 0.0;
-  double skin = 0.0;    ///< vertices of the body
+  double skin = 0.0; ///< vertices of the body
   double total() const { return pose + proxies + broad + cloth + contact + skin; }
 };
 
@@ -40,8 +40,8 @@ public:
   /// Back to time 0 (the clip's start); garments at rest at these positions, one vector a garment (world, m).
   void start(const std::vector<std::vector<Vec3>>& garment_positions);
 
-  /// Jumps to `time`: the body takes its pose there, and each garment is carried along rigidly with the joint that holds it and is
-  /// at rest, so that the jump is never seen as a velocity.
+  /// Jumps to `time`: the body takes its pose there, and each garment is carried along rigidly with the joint that
+  /// holds it and is at rest, so that the jump is never seen as a velocity.
   void jump(double time);
 
   /// One frame of the clip. Does nothing once it has failed.
@@ -54,7 +54,7 @@ public:
   void skin_body();
 
   const Scene& scene() const { return *scene_; }
-  int frame() const { return frame_; }                     ///< frames done since start()
+  int frame() const { return frame_; } ///< frames done since start()
   double frame_seconds() const { return 1.0 / scene_->description.frames_per_second; }
   double time() const { return start_time_ + frame_ * frame_seconds(); } ///< s since the clip's start
   const std::optional<SessionFailure>& failure() const { return failure_; }
@@ -87,7 +87,8 @@ private:
 };
 
 /// Garments settled on the still body, in two phases: the body goes from its rest pose to the clip's first pose (the
-/// garments are built around the rest pose), then stands until no particle is faster than k_settled_speed or `longest` has passed.
+/// garments are built around the rest pose), then stands until no particle is faster than k_settled_speed or `longest`
+/// has passed.
 struct DrapeResult {
   std::vector<std::vector<Vec3>> positions; ///< world, m, one vector a garment
   double seconds = 0.0;                     ///< simulated
@@ -100,8 +101,8 @@ DrapeResult drape(const Scene& scene, double longest, const std::function<bool(i
 /// Of everything a drape depends on: garments, first pose, proxies, ground, solver settings.
 std::uint64_t drape_fingerprint(const Scene& scene);
 
-/// The scene's drape file when it is there and fits; nothing otherwise (a file of another scene state is `stale`). Throws InputError on
-/// a broken file.
+/// The scene's drape file when it is there and fits; nothing otherwise (a file of another scene state is `stale`).
+/// Throws InputError on a broken file.
 std::optional<std::vector<std::vector<Vec3>>> saved_drape(const Scene& scene, bool* stale);
 
 } // namespace tutu::app

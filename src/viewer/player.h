@@ -24,12 +24,12 @@ class Player {
 public:
   virtual ~Player() = default;
 
-  virtual void restart() = 0;              ///< back to time 0 and the draped start
-  virtual bool step() = 0;                 ///< one frame further; false when the simulation had to stop: see message()
-  virtual void seek(double time) = 0;      ///< s; the garments are carried along and settle again
+  virtual void restart() = 0;               ///< back to time 0 and the draped start
+  virtual bool step() = 0;                  ///< one frame further; false when the simulation had to stop: see message()
+  virtual void seek(double time) = 0;       ///< s; the garments are carried along and settle again
   virtual double frame_seconds() const = 0; ///< s a step advances
-  virtual double time() const = 0;         ///< s since the start
-  virtual double duration() const = 0;     ///< s of the motion, for the slider
+  virtual double time() const = 0;          ///< s since the start
+  virtual double duration() const = 0;      ///< s of the motion, for the slider
   virtual std::string title() const = 0;
   virtual std::string message() const = 0; ///< "" or one sentence for the user
   virtual std::vector<StageTime> stage_times() const = 0;

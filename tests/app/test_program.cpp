@@ -25,8 +25,9 @@ protected:
 
   /// A small scene on the shipped dancer; `more` are further members.
   std::string scene(const std::string& more) {
-    return file("scene.json", "{\"character\": \"" + source_file("assets/characters/dancer.dae").string() + "\", \"motion\": \"" +
-                                  source_file("assets/poses/dance.json").string() + "\"" + more + "}");
+    return file("scene.json", "{\"character\": \"" + source_file("assets/characters/dancer.dae").string() +
+                                  "\", \"motion\": \"" + source_file("assets/poses/dance.json").string() + "\"" + more +
+                                  "}");
   }
 
   /// Expects exit status 2, one line, and this text in it.
@@ -45,7 +46,8 @@ TEST_F(Program, HelpAndVersion) {
   EXPECT_EQ(run_program({"--help"}).status, 0);
   EXPECT_THAT(run_program({"--help"}).output, AllOf(HasSubstr("play"), HasSubstr("drape"), HasSubstr("inspect")));
   EXPECT_EQ(run_program({"--version"}).status, 0);
-  for (const char* command : {"play", "drape", "inspect", "mannequin"}) EXPECT_EQ(run_program({command, "--help"}).status, 0) << command;
+  for (const char* command : {"play", "drape", "inspect", "mannequin"})
+    EXPECT_EQ(run_program({command, "--help"}).status, 0) << command;
 }
 
 TEST_F(Program, BadUsageIsStatus2) {
@@ -61,7 +63,8 @@ TEST_F(Program, ScenesThatCannotBe) {
   expect_refused({"play", file("empty.json", "")}, HasSubstr("an empty file"));
   expect_refused({"play", file("cut.json", "{\"character\": \"a")}, HasSubstr("line 1"));
   expect_refused({"play", file("bare.json", "{}")}, HasSubstr("no key \"character\""));
-  expect_refused({"play", scene(", \"garmets\": []")}, HasSubstr("/garmets: found unknown key \"garmets\", expected one of"));
+  expect_refused({"play", scene(", \"garmets\": []")},
+                 HasSubstr("/garmets: found unknown key \"garmets\", expected one of"));
   expect_refused({"play", scene(", \"solver\": {\"substeps\": 0}")}, HasSubstr("/solver/substeps: found 0"));
   expect_refused({"play", scene(", \"solver\": {\"name\": \"magic\"}")}, HasSubstr("/solver/name"));
   expect_refused({"play", scene(", \"collision\": {\"backend\": \"magic\"}")}, HasSubstr("/collision/backend"));
@@ -91,21 +94,27 @@ TEST_F(Program, GarmentsThatCannotBe) {
     file("garment.json", garment);
     return scene(", \"garments\": [\"garment.json\"]");
   };
-  const std::string shape = R"("shape": {"grid": {"rows": 3, "columns": 3, "corner": [0,1,0.2], "across": [0.2,0,0], "down": [0,-0.2,0]}})";
+  const std::string shape =
+      R"("shape": {"grid": {"rows": 3, "columns": 3, "corner": [0,1,0.2], "across": [0.2,0,0], "down": [0,-0.2,0]}})";
   expect_refused({"play", with("{" + shape + R"(, "attachments": [{"joint": "Tail", "rows": 0}]})")},
                  AllOf(HasSubstr("/attachments/0/joint"), HasSubstr("Tail")));
-  expect_refused({"play", with(R"({"shape": {"tube": {"rows": 3, "columns": 8, "rings": []}}})")}, HasSubstr("/shape/tube/rings"));
+  expect_refused({"play", with(R"({"shape": {"tube": {"rows": 3, "columns": 8, "rings": []}}})")},
+                 HasSubstr("/shape/tube/rings"));
 }
 
 TEST_F(Program, ClipsThatCannotBe) {
   const auto with = [&](const std::string& clip) {
     file("clip.json", clip);
-    return file("scene.json", "{\"character\": \"" + source_file("assets/characters/dancer.dae").string() + "\", \"motion\": \"clip.json\"}");
+    return file("scene.json", "{\"character\": \"" + source_file("assets/characters/dancer.dae").string() +
+                                  "\", \"motion\": \"clip.json\"}");
   };
   expect_refused({"play", with(R"({"keys": []})")}, HasSubstr("clip.json"));
-  expect_refused({"play", with(R"({"keys": [{"time": 0, "joints": {}}, {"time": 0, "joints": {}}]})")}, HasSubstr("/keys/1"));
-  expect_refused({"play", with(R"({"keys": [{"time": 0, "joints": {"Tail": {"translation": [0,0,0]}}}]})")}, HasSubstr("Tail"));
-  expect_refused({"play", with(R"({"keys": [{"time": 0, "joints": {"Hips": {"rotation": [0,0,0,0]}}}]})")}, HasSubstr("rotation"));
+  expect_refused({"play", with(R"({"keys": [{"time": 0, "joints": {}}, {"time": 0, "joints": {}}]})")},
+                 HasSubstr("/keys/1"));
+  expect_refused({"play", with(R"({"keys": [{"time": 0, "joints": {"Tail": {"translation": [0,0,0]}}}]})")},
+                 HasSubstr("Tail"));
+  expect_refused({"play", with(R"({"keys": [{"time": 0, "joints": {"Hips": {"rotation": [0,0,0,0]}}}]})")},
+                 HasSubstr("rotation"));
 }
 
 TEST_F(Program, TextsWithTheWrongNumberOfJoints) {
@@ -113,7 +122,8 @@ TEST_F(Program, TextsWithTheWrongNumberOfJoints) {
   file("r.txt", "0 0 0 1\n");
   file("k.txt", "0\n");
   const std::string s = file("scene.json", "{\"character\": \"" + source_file("assets/characters/dancer.dae").string() +
-                                               "\", \"motion\": {\"texts\": {\"translations\": \"t.txt\", \"rotations\": \"r.txt\", \"times\": \"k.txt\"}}}");
+                                               "\", \"motion\": {\"texts\": {\"translations\": \"t.txt\", "
+                                               "\"rotations\": \"r.txt\", \"times\": \"k.txt\"}}}");
   expect_refused({"play", s}, AllOf(HasSubstr("t.txt"), HasSubstr("line 1"), HasSubstr("156")));
 }
 
@@ -127,37 +137,45 @@ TEST_F(Program, CharactersThatCannotBe) {
 
 TEST_F(Program, DivergenceIsStatus1WithItsPlaceAndLeavesNoFilm_slow) {
   // Five substeps a frame cannot carry cloth this stiff.
-  file("stiff.json", R"({"name": "stiff", "shape": {"tube": {"rows": 12, "columns": 16, "rings": [{"height": 1.05, "radius": 0.2}, {"height": 0.6, "radius": 0.3}]}},
+  file(
+      "stiff.json",
+      R"({"name": "stiff", "shape": {"tube": {"rows": 12, "columns": 16, "rings": [{"height": 1.05, "radius": 0.2}, {"height": 0.6, "radius": 0.3}]}},
     "fabric": {"stretch": 20000}, "attachments": [{"joint": "Hips", "rows": 0}]})");
-  const Outcome outcome = run_program({"play", scene(", \"garments\": [\"stiff.json\"], \"solver\": {\"substeps\": 5}"), "--headless", "-o",
-                                       (folder_ / "film.mp4").string(), "--json", (folder_ / "stats.json").string()});
+  const Outcome outcome =
+      run_program({"play", scene(", \"garments\": [\"stiff.json\"], \"solver\": {\"substeps\": 5}"), "--headless", "-o",
+                   (folder_ / "film.mp4").string(), "--json", (folder_ / "stats.json").string()});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.output, AllOf(HasSubstr("stiff diverged in frame"), HasSubstr("particle"), HasSubstr("largest force")));
-  for (const auto& entry : std::filesystem::directory_iterator(folder_)) EXPECT_EQ(entry.path().extension(), ".json") << entry.path();
+  EXPECT_THAT(outcome.output,
+              AllOf(HasSubstr("stiff diverged in frame"), HasSubstr("particle"), HasSubstr("largest force")));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_))
+    EXPECT_EQ(entry.path().extension(), ".json") << entry.path();
 }
 
 TEST_F(Program, TheJumpingHumanJumpsInHisSkirt_slow) {
-  const Outcome outcome = run_program({"play", source_file("assets/scenes/epileptic.json").string(), "--no-pictures", "--json",
-                                       (folder_ / "stats.json").string()});
+  const Outcome outcome = run_program({"play", source_file("assets/scenes/epileptic.json").string(), "--no-pictures",
+                                       "--json", (folder_ / "stats.json").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "stats.json")).at("frames"), 198);
 }
 
 TEST_F(Program, AHumanDancesOurDance_slow) {
-  if (!std::filesystem::exists(human("human-female.dae"))) GTEST_SKIP() << "no human test characters beside the checkout";
-  const Outcome outcome = run_program({"play", source_file("tests/fixtures/scenes/human.json").string(), "--no-pictures", "--json",
-                                       (folder_ / "stats.json").string()});
+  if (!std::filesystem::exists(human("human-female.dae")))
+    GTEST_SKIP() << "no human test characters beside the checkout";
+  const Outcome outcome = run_program({"play", source_file("tests/fixtures/scenes/human.json").string(),
+                                       "--no-pictures", "--json", (folder_ / "stats.json").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "stats.json")).at("diverged"), false);
 }
 
 TEST_F(Program, PicturesAndFilmsAppearWhole_slow) {
   const std::string dance = source_file("assets/scenes/dance.json").string();
-  Outcome outcome = run_program({"play", dance, "--at", "0,3", "-o", (folder_ / "stills").string(), "--size", "320x180"});
+  Outcome outcome =
+      run_program({"play", dance, "--at", "0,3", "-o", (folder_ / "stills").string(), "--size", "320x180"});
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_TRUE(std::filesystem::exists(folder_ / "stills" / "dance-0000.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "stills" / "dance-0003.png"));
-  outcome = run_program({"play", dance, "--headless", "--frames", "5", "-o", (folder_ / "film.mp4").string(), "--size", "320x180"});
+  outcome = run_program(
+      {"play", dance, "--headless", "--frames", "5", "-o", (folder_ / "film.mp4").string(), "--size", "320x180"});
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_GT(std::filesystem::file_size(folder_ / "film.mp4"), 1000u);
 }
@@ -170,14 +188,15 @@ TEST_F(Program, ADrapeIsSavedAndUsed_slow) {
   EXPECT_EQ(nlohmann::json::parse(read_file(out)).at("garments").size(), 2u);
   // A scene whose drape no longer fits says so and drapes anew.
   file("old.drape.json", R"({"fingerprint": "1", "garments": []})");
-  const Outcome stale = run_program({"play", scene(", \"drape\": \"old.drape.json\""), "--no-pictures", "--headless", "--frames", "2"});
+  const Outcome stale =
+      run_program({"play", scene(", \"drape\": \"old.drape.json\""), "--no-pictures", "--headless", "--frames", "2"});
   EXPECT_EQ(stale.status, 0);
   EXPECT_THAT(stale.output, HasSubstr("old.drape.json was made for another state of the scene"));
 }
 
 TEST_F(Program, TheDanceRunsAndReports_slow) {
-  const Outcome outcome = run_program({"play", source_file("assets/scenes/dance.json").string(), "--no-pictures", "--frames", "60", "--json",
-                                       (folder_ / "stats.json").string()});
+  const Outcome outcome = run_program({"play", source_file("assets/scenes/dance.json").string(), "--no-pictures",
+                                       "--frames", "60", "--json", (folder_ / "stats.json").string()});
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json stats = nlohmann::json::parse(read_file(folder_ / "stats.json"));
   EXPECT_EQ(stats.at("frames"), 60);
@@ -185,9 +204,9 @@ TEST_F(Program, TheDanceRunsAndReports_slow) {
   EXPECT_EQ(stats.at("recoveries"), 0);
   for (const char* stage : {"pose", "proxies", "broad", "cloth", "contact", "skin", "total"})
     EXPECT_GT(stats.at("ms_per_frame").at(stage).at("median").get<double>(), 0.0) << stage;
-    // The same run gives the same bits.
-  const Outcome again = run_program({"play", source_file("assets/scenes/dance.json").string(), "--no-pictures", "--frames", "60", "--json",
-                                     (folder_ / "again.json").string()});
+  // The same run gives the same bits.
+  const Outcome again = run_program({"play", source_file("assets/scenes/dance.json").string(), "--no-pictures",
+                                     "--frames", "60", "--json", (folder_ / "again.json").string()});
   ASSERT_EQ(again.status, 0);
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "again.json")).at("state_hash"), stats.at("state_hash"));
 }

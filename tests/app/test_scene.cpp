@@ -58,7 +58,8 @@ TEST(Session, PinsFollowTheirJointsRotationToo) {
   for (std::size_t g = 0; g < scene.garments.size(); ++g)
     for (const cloth::Pin& pin : scene.garments[g].pins) {
       const int joint = scene.attachment_joints[g][pin.attachment];
-      const Vec3 expected = session.world_from_joint()[joint] * (rest[joint].inverse() * scene.garments[g].rest_positions[pin.particle]);
+      const Vec3 expected =
+          session.world_from_joint()[joint] * (rest[joint].inverse() * scene.garments[g].rest_positions[pin.particle]);
       EXPECT_LT((session.garments()[g].particles().positions[pin.particle] - expected).norm(), 1e-12);
     }
 }
@@ -139,11 +140,13 @@ TEST(Drape, FingerprintSeesWhatMatters) {
 TEST(SceneFile, ReadsEveryFormOfMotion) {
   const auto folder = scratch_folder();
   const auto read = [&](const std::string& motion) {
-    write_file(folder / "s.json", R"({"character": {"file": "a.dae", "max_influences": 8}, "ground": false, "motion": )" + motion + "}");
+    write_file(folder / "s.json",
+               R"({"character": {"file": "a.dae", "max_influences": 8}, "ground": false, "motion": )" + motion + "}");
     return read_scene(folder / "s.json");
   };
   EXPECT_EQ(std::get<ClipMotion>(read("\"m.json\"").motion).clip, folder / "m.json");
-  EXPECT_EQ(*std::get<ClipMotion>(read(R"({"clip": "m.json", "retarget_from": "b.dae"})").motion).retarget_from, folder / "b.dae");
+  EXPECT_EQ(*std::get<ClipMotion>(read(R"({"clip": "m.json", "retarget_from": "b.dae"})").motion).retarget_from,
+            folder / "b.dae");
   EXPECT_EQ(std::get<int>(std::get<OwnMotion>(read(R"({"animation": 2})").motion).animation), 2);
   EXPECT_EQ(std::get<std::string>(std::get<OwnMotion>(read(R"({"animation": "jump"})").motion).animation), "jump");
   const SceneDescription texts = read(R"({"texts": {"translations": "t", "rotations": "r", "times": "k"}})");

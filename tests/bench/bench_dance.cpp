@@ -8,7 +8,8 @@ namespace {
 using namespace tutu;
 
 void dance(benchmark::State& state, proxies::Backend backend) {
-  app::SceneDescription description = app::read_scene(std::filesystem::path(TUTU_SOURCE_DIR) / "assets/scenes/dance.json");
+  app::SceneDescription description =
+      app::read_scene(std::filesystem::path(TUTU_SOURCE_DIR) / "assets/scenes/dance.json");
   description.backend = backend;
   const app::Scene scene = app::load_scene(description);
   bool stale = false;

@@ -32,7 +32,8 @@ GarmentDescription tube(int rows, int columns, std::optional<double> seam) {
 }
 
 int count(const Garment& garment, SpringKind kind) {
-  return static_cast<int>(std::count_if(garment.springs.begin(), garment.springs.end(), [&](const Spring& s) { return s.kind == kind; }));
+  return static_cast<int>(
+      std::count_if(garment.springs.begin(), garment.springs.end(), [&](const Spring& s) { return s.kind == kind; }));
 }
 
 TEST(Garment, ARectangleHasTheReportsSprings) {
@@ -62,7 +63,8 @@ TEST(Garment, TheSeamEndsWhereTheSlitBegins) {
   const Garment garment = build_garment(tube(30, 30, 1.0 / 3.0));
   EXPECT_EQ(garment.seams.size(), 10u);
   for (int row = 0; row < 30; ++row)
-    EXPECT_EQ(garment.rest_positions[row * 30], garment.rest_positions[row * 30 + 29]) << "both edges start in one place";
+    EXPECT_EQ(garment.rest_positions[row * 30], garment.rest_positions[row * 30 + 29])
+        << "both edges start in one place";
 }
 
 TEST(Garment, MassIsDensityTimesArea) {
@@ -73,7 +75,8 @@ TEST(Garment, MassIsDensityTimesArea) {
 }
 
 TEST(Garment, AFinerGridIsTheSameSheet) {
-  // Pulled along one thread direction by a strain e, the sheet stores k A e^2 / 2 in its structural springs, however fine.
+  // Pulled along one thread direction by a strain e, the sheet stores k A e^2 / 2 in its structural springs, however
+  // fine.
   for (const int n : {5, 10, 40}) {
     const Garment garment = build_garment(rectangle(n, n));
     const double strain = 0.01;
@@ -153,18 +156,22 @@ TEST_F(GarmentFile, ReadsATube) {
 TEST_F(GarmentFile, EveryMistakeIsNamedWithItsPlace) {
   using ::testing::HasSubstr;
   const auto with_shape = [](const std::string& shape) { return "{\"shape\": " + shape + "}"; };
-  const std::string grid = R"({"grid": {"rows": 3, "columns": 3, "corner": [0,0,0], "across": [1,0,0], "down": [0,-1,0]}})";
+  const std::string grid =
+      R"({"grid": {"rows": 3, "columns": 3, "corner": [0,0,0], "across": [1,0,0], "down": [0,-1,0]}})";
   EXPECT_EQ(message_for(with_shape(grid)), "");
   EXPECT_THAT(message_for("{}"), HasSubstr("shape"));
   EXPECT_THAT(message_for(""), HasSubstr("an empty file"));
   EXPECT_THAT(message_for("{\"shape\": "), HasSubstr("line 1"));
   EXPECT_THAT(message_for(with_shape("{}")), HasSubstr("/shape"));
   EXPECT_THAT(message_for(R"({"shap": 1})"), HasSubstr("unknown key \"shap\""));
-  EXPECT_THAT(message_for(with_shape(R"({"grid": {"rows": 1, "columns": 3, "corner": [0,0,0], "across": [1,0,0], "down": [0,-1,0]}})")),
+  EXPECT_THAT(message_for(with_shape(
+                  R"({"grid": {"rows": 1, "columns": 3, "corner": [0,0,0], "across": [1,0,0], "down": [0,-1,0]}})")),
               HasSubstr("/shape/grid/rows: found 1, expected a whole number from 2"));
-  EXPECT_THAT(message_for("{\"shape\": " + grid + R"(, "fabric": {"density": -1}})"), HasSubstr("/fabric/density: found -1"));
+  EXPECT_THAT(message_for("{\"shape\": " + grid + R"(, "fabric": {"density": -1}})"),
+              HasSubstr("/fabric/density: found -1"));
   EXPECT_THAT(message_for("{\"shape\": " + grid + R"(, "fabric": {"density": 1e999}})"), HasSubstr("finite"));
-  EXPECT_THAT(message_for("{\"shape\": " + grid + R"(, "attachments": [{"joint": "Hips", "rows": 7}]})"), HasSubstr("/attachments/0"));
+  EXPECT_THAT(message_for("{\"shape\": " + grid + R"(, "attachments": [{"joint": "Hips", "rows": 7}]})"),
+              HasSubstr("/attachments/0"));
   EXPECT_THAT(message_for("{\"shape\": " + grid + R"(, "name": "a", "name": "b"})"), HasSubstr("twice"));
 }
 

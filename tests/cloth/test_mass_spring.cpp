@@ -77,7 +77,9 @@ TEST(MassSpring, FreeFallIsThatOfTheScheme) {
   Vec3 momentum = Vec3::Zero();
   for (int i = 0; i < garment.particle_count(); ++i) {
     momentum += garment.masses[i] * cloth.particles().velocities[i];
-    EXPECT_LT((cloth.particles().positions[i] - garment.rest_positions[i] - input.gravity * (h * h * n * (n + 1) / 2)).norm(), 1e-10);
+    EXPECT_LT(
+        (cloth.particles().positions[i] - garment.rest_positions[i] - input.gravity * (h * h * n * (n + 1) / 2)).norm(),
+        1e-10);
   }
   EXPECT_LT((momentum - total_mass * n * h * input.gravity).norm(), 1e-12 * n);
 }

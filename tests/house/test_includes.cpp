@@ -42,7 +42,8 @@ std::vector<std::string> against_order(const std::vector<Include>& includes, std
   std::vector<std::string> wrong;
   for (const Include& include : includes)
     for (std::size_t later = rank + 1; later < k_order.size(); ++later)
-      if (include.target.starts_with(k_order[later] + "/")) wrong.push_back(include.file.string() + " includes " + include.target);
+      if (include.target.starts_with(k_order[later] + "/"))
+        wrong.push_back(include.file.string() + " includes " + include.target);
   return wrong;
 }
 

@@ -27,8 +27,8 @@ inline std::filesystem::path human(const std::string& name) {
 /// A fresh empty folder of the running test's own.
 inline std::filesystem::path scratch_folder() {
   const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-  const auto folder = std::filesystem::temp_directory_path() /
-                      ("tutu-" + std::string(info->test_suite_name()) + "." + info->name() + "." + std::to_string(::getpid()));
+  const auto folder = std::filesystem::temp_directory_path() / ("tutu-" + std::string(info->test_suite_name()) + "." +
+                                                                info->name() + "." + std::to_string(::getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
   return folder;

@@ -10,7 +10,7 @@
 namespace tutu::test {
 
 struct Outcome {
-  int status = -1; ///< exit status; 128 + signal when killed
+  int status = -1;    ///< exit status; 128 + signal when killed
   std::string output; ///< stdout and stderr, as they came
 };
 
@@ -29,7 +29,8 @@ inline Outcome run_program(const std::vector<std::string>& arguments, const std:
   std::FILE* pipe = ::popen(("{ " + command + "; } 2>&1 < /dev/null").c_str(), "r");
   if (!pipe) return outcome;
   std::array<char, 4096> buffer{};
-  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe)) outcome.output.append(buffer.data(), got);
+  while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    outcome.output.append(buffer.data(), got);
   const int status = ::pclose(pipe);
   outcome.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return outcome;

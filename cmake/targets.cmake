@@ -1,4 +1,4 @@
-# Flags every target of the house shares.
+# Flags and functions that every target of the house shares.
 add_library(tutu_warnings INTERFACE)
 target_compile_options(tutu_warnings INTERFACE
   # GCC 12 sees overlaps in std::string + that are not there (PR 105651): -Wno-restrict.
@@ -12,8 +12,10 @@ target_compile_options(tutu_arithmetic INTERFACE -ffp-contract=off -fno-math-err
 
 install(TARGETS tutu_warnings tutu_arithmetic EXPORT tutuTargets)
 
-# tutu_library(NAME DEPENDS...): all sources of this folder as library tutu_NAME, alias tutu::NAME.
+# tutu_library(NAME [PRIVATE_HEADERS REGEX]): all sources of this folder as library tutu_NAME, alias tutu::NAME. Headers whose
+# name matches the regex are the folder's own and are not installed.
 function(tutu_library name)
+  cmake_parse_arguments(arg "" "PRIVATE_HEADERS" "" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
   file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   add_library(tutu_${name} STATIC ${sources} ${headers})
@@ -24,5 +26,9 @@ function(tutu_library name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tutu>)
   target_link_libraries(tutu_${name} PRIVATE tutu_warnings tutu_arithmetic)
   install(TARGETS tutu_${name} EXPORT tutuTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tutu/${name})
+  set(public_headers ${headers})
+  if(arg_PRIVATE_HEADERS)
+    list(FILTER public_headers EXCLUDE REGEX "/(${arg_PRIVATE_HEADERS})[a-z_]*\\.h$")
+  endif()
+  install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tutu/${name})
 endfunction()
