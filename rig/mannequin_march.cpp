@@ -71,14 +71,13 @@ HalfSurface march_body() {
       }
     }
     const auto cut = [&](int a, int b) { return crossing(corner, t[inside[a]], t[outside[b]]); };
-    const auto add = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-      half.triangles.push_back(flip ? Triangle{a, c, b} : Triangle{a, b, c});
-    };
-    if (n_in == 1) add(cut(0, 0), cut(0, 1), cut(0, 2));
-    if (n_in == 3) add(cut(0, 0), cut(1, 0), cut(2, 0));
+    // Braces, not parentheses: their order is given, and with it the numbers of the vertices.
+    const auto add = [&](const Triangle& c) { half.triangles.push_back(flip ? Triangle{c[0], c[2], c[1]} : c); };
+    if (n_in == 1) add({cut(0, 0), cut(0, 1), cut(0, 2)});
+    if (n_in == 3) add({cut(0, 0), cut(1, 0), cut(2, 0)});
     if (n_in == 2) {
-      add(cut(0, 0), cut(0, 1), cut(1, 1));
-      add(cut(0, 0), cut(1, 1), cut(1, 0));
+      add({cut(0, 0), cut(0, 1), cut(1, 1)});
+      add({cut(0, 0), cut(1, 1), cut(1, 0)});
     }
   };
 

@@ -64,7 +64,7 @@ TEST(Mannequin, is_written_with_the_same_bytes_as_the_asset_slow) {
       << "write the asset anew: tutu mannequin --out assets/characters/dancer.dae";
 }
 
-TEST(Mannequin, has_the_52_joints_at_mirrored_places_and_unturned) {
+TEST(Mannequin, has_the_52_joints_at_mirrored_places_and_unturned_slow) {
   const Skeleton& skeleton = dancer().skeleton;
   ASSERT_EQ(skeleton.joint_count(), 52);
   EXPECT_NO_THROW(skeleton.check("dancer"));
@@ -97,7 +97,7 @@ TEST(Mannequin, surface_is_one_closed_skin_without_handles) {
   EXPECT_LE(mesh.vertex_count() + dancer().spheres.vertex_count(), 15000);
 }
 
-TEST(Mannequin, stands_on_the_ground_1_70_m_tall) {
+TEST(Mannequin, stands_on_the_ground_1_70_m_tall_slow) {
   float lowest = 10.0f, highest = -10.0f;
   for (const Vec3f& p : dancer().surface.positions) {
     lowest = std::min(lowest, p.y());
@@ -107,7 +107,7 @@ TEST(Mannequin, stands_on_the_ground_1_70_m_tall) {
   EXPECT_NEAR(highest - lowest, 1.70, 1e-3);
 }
 
-TEST(Mannequin, triangles_have_area_and_normals_look_outward) {
+TEST(Mannequin, triangles_have_area_and_normals_look_outward_slow) {
   for (const Mesh* mesh : {&dancer().surface, &dancer().spheres}) {
     ASSERT_EQ(mesh->normals.size(), mesh->positions.size());
     int slivers = 0, inward = 0, not_unit = 0;
@@ -126,7 +126,7 @@ TEST(Mannequin, triangles_have_area_and_normals_look_outward) {
   }
 }
 
-TEST(Mannequin, weights_are_few_sum_to_one_and_mirror) {
+TEST(Mannequin, weights_are_few_sum_to_one_and_mirror_slow) {
   const Mannequin& d = dancer();
   const Skin& skin = d.surface_skin;
   ASSERT_EQ(skin.influences, 4);
@@ -167,7 +167,7 @@ TEST(Mannequin, weights_are_few_sum_to_one_and_mirror) {
   EXPECT_EQ(unlike, 0);
 }
 
-TEST(Mannequin, nothing_hangs_on_a_limb_it_does_not_touch) {
+TEST(Mannequin, nothing_hangs_on_a_limb_it_does_not_touch_slow) {
   const Mannequin& d = dancer();
   const Skin& skin = d.surface_skin;
   const auto weight = [&](std::size_t v, const char* part) {
@@ -193,7 +193,7 @@ TEST(Mannequin, nothing_hangs_on_a_limb_it_does_not_touch) {
   }
 }
 
-TEST(Mannequin, spheres_hide_at_the_joints_they_hang_on) {
+TEST(Mannequin, spheres_hide_at_the_joints_they_hang_on_slow) {
   const Mannequin& d = dancer();
   const std::vector<Transform> rest = rest_model(d.skeleton);
   expect_closed(d.spheres);
