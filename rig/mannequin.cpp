@@ -67,7 +67,7 @@ void unit_sphere(std::vector<Vec3>& points, std::vector<Triangle>& triangles) {
 
 /// A sphere about every joint, as large as fits under the skin.
 void add_spheres(Mannequin& mannequin) {
-  constexpr double k_largest = 0.018, k_smallest = 0.003, k_fit = 0.8; // m, m, of the joint's depth below the skin
+  constexpr double k_largest = 0.018, k_smallest = 0.003, k_fit = 0.5; // m, m, of the joint's depth below the skin
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;
   unit_sphere(points, triangles);
