@@ -206,6 +206,12 @@ Garment build_garment(const GarmentDescription& description) {
   return garment;
 }
 
+std::vector<std::uint8_t> pinned_flags(const Garment& garment) {
+  std::vector<std::uint8_t> pinned(garment.rest_positions.size(), 0);
+  for (const Pin& pin : garment.pins) pinned[pin.particle] = 1;
+  return pinned;
+}
+
 GarmentDescription fitted(GarmentDescription description, const Vec3& scale, const Vec3& offset) {
   if (auto* grid = std::get_if<GridShape>(&description.shape)) {
     grid->corner = scale.cwiseProduct(grid->corner) + offset;

@@ -116,6 +116,9 @@ struct Garment {
 /// attachment beyond the rows, a particle pinned twice.
 Garment build_garment(const GarmentDescription& description);
 
+/// One entry a particle: 1 where it is pinned.
+std::vector<std::uint8_t> pinned_flags(const Garment& garment);
+
 /// Scales (per axis, about the origin) and then moves the shape: how a garment is put on another body.
 GarmentDescription fitted(GarmentDescription description, const Vec3& scale, const Vec3& offset);
 

@@ -7,16 +7,6 @@
 #include <numeric>
 
 namespace tutu::cloth {
-namespace {
-
-std::vector<std::uint8_t> pinned_flags(const Garment& garment) {
-  std::vector<std::uint8_t> pinned(garment.rest_positions.size(), 0);
-  for (const Pin& pin : garment.pins) pinned[pin.particle] = 1;
-  return pinned;
-}
-
-} // namespace
-
 double percentile(std::vector<double>& samples, double share) {
   if (samples.empty()) return 0.0;
   const double rank = std::ceil(share * static_cast<double>(samples.size())) - 1.0;

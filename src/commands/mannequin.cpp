@@ -1,5 +1,5 @@
-#include "rig/file_io.h"
 #include "rig/mannequin.h"
+#include "rig/file_io.h"
 #include "src/commands/commands.h"
 
 #include <fmt/format.h>

@@ -80,7 +80,8 @@ public:
 
     out_ = options.out;
     if (out_.has_extension() && (out_.extension() != ".mp4" || !at_.empty()))
-      throw InputError("", "--out", out_.string(), at_.empty() ? "a film (.mp4) or a folder" : "a folder for the pictures");
+      throw InputError("", "--out", out_.string(),
+                       at_.empty() ? "a film (.mp4) or a folder" : "a folder for the pictures");
     const bool film = at_.empty() && (out_.empty() ? ffmpeg_available() : out_.extension() == ".mp4");
     if (out_.empty()) out_ = film ? stem_ + ".mp4" : at_.empty() ? stem_ + "-frames" : ".";
     if (film) video_.emplace(out_, width, height, scene.description.frames_per_second);

@@ -14,7 +14,7 @@ namespace tutu::app {
 struct SceneOptions {
   std::string scene; ///< empty: the default scene
   std::optional<int> substeps;
-  std::optional<std::string> backend;
+  std::optional<std::string> backend, solver;
 
   void add_to(CLI::App& command);
   /// The scene file with these options applied; notes of the loading go to stderr.

@@ -14,8 +14,9 @@ constexpr double k_drape_drag =
 
 double fastest_of(const Session& session) {
   double fastest = 0.0;
-  for (const cloth::MassSpring& garment : session.garments())
-    for (const Vec3& v : garment.particles().velocities) fastest = std::max(fastest, v.norm());
+  for (std::size_t g = 0; g < session.scene().garments.size(); ++g)
+    for (const Vec3& v : session.garment(static_cast<int>(g)).particles().velocities)
+      fastest = std::max(fastest, v.norm());
   return fastest;
 }
 
@@ -41,7 +42,8 @@ DrapeResult drape(const Scene& scene, double longest, const std::function<bool(i
   }
   result.seconds = session.frame() * session.frame_seconds();
   result.failure = session.failure();
-  for (const cloth::MassSpring& garment : session.garments()) result.positions.push_back(garment.particles().positions);
+  for (std::size_t g = 0; g < scene.garments.size(); ++g)
+    result.positions.push_back(session.garment(static_cast<int>(g)).particles().positions);
   return result;
 }
 
@@ -74,7 +76,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   add_pose(scene.clip.key(0));
   for (const proxies::Proxy& proxy : scene.proxies) {
     if (!proxy.enabled) continue;
-    add(proxy.radius, proxy.a.count, proxy.b.count);
+    add(proxy.radius, proxy.friction);
     for (const proxies::Anchor* anchor : {&proxy.a, &proxy.b})
       for (int k = 0; k < anchor->count; ++k) {
         add(anchor->joints[k], anchor->weights[k]);
@@ -83,7 +85,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   }
   const SceneDescription& d = scene.description;
   add(d.ground_height ? *d.ground_height : 0.0, d.ground_height ? 1.0 : 0.0);
-  add(d.frames_per_second, d.substeps);
+  add(d.frames_per_second, d.substeps, d.solver == cloth::SolverKind::xpbd ? 1.0 : 0.0);
   return cloth::state_hash(numbers);
 }
 

@@ -18,10 +18,10 @@ void RunStats::add(const Session& session) {
   const double ms[] = {t.pose, t.proxies, t.broad, t.cloth, t.contact, t.skin, t.total()};
   for (std::size_t k = 0; k < stages_.size(); ++k) stages_[k].ms.push_back(ms[k]);
   const proxies::SweptColliders colliders = session.colliders().swept();
-  history_.resize(session.garments().size());
-  for (std::size_t g = 0; g < session.garments().size(); ++g) {
+  history_.resize(scene_->garments.size());
+  for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
     const cloth::Garment& garment = scene_->garments[g];
-    const cloth::Particles& particles = session.garments()[g].particles();
+    const cloth::Particles& particles = session.garment(static_cast<int>(g)).particles();
     for (const double depth : cloth::penetration_of(garment, particles, colliders.end, colliders.ground))
       depths_mm_.push_back(1000.0 * depth);
     for (const double stretch : cloth::stretch_of(garment, particles)) stretches_.push_back(stretch);
@@ -44,7 +44,7 @@ nlohmann::json RunStats::json(const Session& session) const {
       {"scene", scene_->name()},
       {"frames", frames_},
       {"seed", 0}, // nothing in a run is random
-      {"solver", "mass_spring"},
+      {"solver", name_of(scene_->description.solver)},
       {"substeps", scene_->description.substeps},
       {"backend", session.backend()},
       {"threads", 1},
@@ -63,10 +63,10 @@ nlohmann::json RunStats::json(const Session& session) const {
 std::string RunStats::text(const Session& session) const {
   int particles = 0;
   for (const cloth::Garment& garment : scene_->garments) particles += garment.particle_count();
-  std::string text =
-      fmt::format("{}: {} frames ({:.2f} s), {} garments of {} particles, {} proxies ({}), {} substeps a frame\n",
-                  scene_->name(), frames_, frames_ * session.frame_seconds(), scene_->garments.size(), particles,
-                  session.colliders().size(), session.backend(), scene_->description.substeps);
+  std::string text = fmt::format(
+      "{}: {} frames ({:.2f} s), {} garments of {} particles, {} proxies ({}), {}, {} substeps a frame\n",
+      scene_->name(), frames_, frames_ * session.frame_seconds(), scene_->garments.size(), particles,
+      session.colliders().size(), session.backend(), name_of(scene_->description.solver), scene_->description.substeps);
   if (frames_ == 0) return text;
   text += "ms a frame, median (p99):";
   for (const Stage& stage : stages_)

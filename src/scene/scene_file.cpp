@@ -83,7 +83,9 @@ SceneDescription read_scene(const fs::path& file) {
   }
   if (const auto solver = json.find("solver")) {
     solver->only_keys({"name", "substeps", "frames_per_second"});
-    if (const auto name = solver->find("name")) name->string_among({"mass_spring"});
+    if (const auto name = solver->find("name"))
+      scene.solver = name->string_among({"mass_spring", "xpbd"}) == "xpbd" ? cloth::SolverKind::xpbd
+                                                                           : cloth::SolverKind::mass_spring;
     if (const auto substeps = solver->find("substeps")) scene.substeps = substeps->integer_in(1, 10000);
     if (const auto rate = solver->find("frames_per_second")) scene.frames_per_second = rate->integer_in(1, 10000);
   }

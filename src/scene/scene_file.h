@@ -1,6 +1,7 @@
 // Scenes on disk: JSON, schema in assets/schema/scene.schema.json. Paths in a scene are relative to the scene's folder.
 #pragma once
 
+#include "cloth/solver.h"
 #include "proxies/collision_query.h"
 #include "rig/clip_file.h"
 
@@ -39,7 +40,8 @@ struct SceneDescription {
   std::vector<GarmentEntry> garments;
   std::optional<double> ground_height = 0.0; ///< m; none = no ground
   int frames_per_second = 60;
-  int substeps = 16; ///< a frame
+  cloth::SolverKind solver = cloth::SolverKind::xpbd;
+  int substeps = 10; ///< a frame
   proxies::Backend backend = proxies::Backend::fcl;
   std::filesystem::path drape; ///< where the settled garments are kept
 };

@@ -55,7 +55,7 @@ FrameView SceneView::frame(const Session& session, const Layers& layers) {
   if (layers.body) add_body(session, view, layers.wireframe);
   for (std::size_t g = 0; g < cloth_.size(); ++g) {
     const cloth::Garment& garment = session.scene().garments[g];
-    const std::vector<Vec3>& particles = session.garments()[g].particles().positions;
+    const std::vector<Vec3>& particles = session.garment(static_cast<int>(g)).particles().positions;
     if (layers.cloth) {
       particles_.clear();
       for (const Vec3& p : particles) particles_.push_back(p.cast<float>());

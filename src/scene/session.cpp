@@ -20,6 +20,8 @@ private:
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+constexpr double k_ground_friction = 0.5; // Coulomb: cloth on a wooden stage
+
 std::optional<proxies::Plane> ground_of(const SceneDescription& description) {
   if (!description.ground_height) return std::nullopt;
   return proxies::Plane{Vec3::UnitY(), *description.ground_height};
@@ -42,12 +44,13 @@ Session::Session(const Scene& scene)
       palette_(scene.character.skin.slot_count()), body_positions_(scene.character.mesh.positions.size()),
       body_normals_(scene.character.mesh.positions.size()) {
   for (const Transform& joint : world_) rest_inverse_.push_back(joint.inverse());
-  std::vector<std::vector<Vec3>> rest;
   for (const cloth::Garment& garment : scene.garments) {
-    garments_.emplace_back(garment);
+    garments_.push_back(cloth::make_solver(scene.description.solver, garment));
     pins_start_.emplace_back(garment.pins.size());
     pins_end_.emplace_back(garment.pins.size());
   }
+  for (const proxies::Proxy& proxy : colliders_.proxies()) friction_.push_back(proxy.friction);
+  friction_.push_back(k_ground_friction);
   // The rest pose until somebody starts the clip: garments are built around it.
   colliders_.reset(world_);
   place_pins(pins_end_);
@@ -76,7 +79,7 @@ void Session::start(const std::vector<std::vector<Vec3>>& garment_positions) {
   pose_at(0.0);
   colliders_.reset(world_);
   place_pins(pins_end_);
-  for (std::size_t g = 0; g < garments_.size(); ++g) garments_[g].reset(garment_positions[g]);
+  for (std::size_t g = 0; g < garments_.size(); ++g) garments_[g]->reset(garment_positions[g]);
 }
 
 void Session::jump(double time) {
@@ -89,9 +92,9 @@ void Session::jump(double time) {
   for (std::size_t g = 0; g < garments_.size(); ++g) {
     const int joint = scene_->attachment_joints[g].empty() ? 0 : scene_->attachment_joints[g].front();
     const Transform carry = world_[joint] * before[joint].inverse();
-    std::vector<Vec3> positions = garments_[g].particles().positions;
+    std::vector<Vec3> positions = garments_[g]->particles().positions;
     for (Vec3& p : positions) p = carry * p;
-    garments_[g].reset(positions);
+    garments_[g]->reset(positions);
   }
 }
 
@@ -120,16 +123,17 @@ void Session::advance_to(std::span<const Transform> local, double extra_drag) {
   for (std::size_t g = 0; g < garments_.size() && !failure_; ++g) {
     cloth::FrameInput input;
     input.colliders = colliders_.swept();
+    input.friction = friction_;
     input.pins_start = pins_start_[g];
     input.pins_end = pins_end_[g];
     input.seconds = frame_seconds();
     input.substeps = scene_->description.substeps;
     input.extra_drag = extra_drag;
-    if (const auto divergence = garments_[g].step(input, *query_)) {
+    if (const auto divergence = garments_[g]->step(input, *query_)) {
       const double moment = time() + frame_seconds() * (divergence->substep + 1) / input.substeps;
       failure_ = SessionFailure{scene_->garments[g].name, *divergence, frame_, moment};
     }
-    const cloth::SolverTimes& t = garments_[g].times();
+    const cloth::SolverTimes& t = garments_[g]->times();
     times_.broad += t.broad;
     times_.cloth += t.cloth;
     times_.contact += t.contact;
@@ -146,7 +150,7 @@ void Session::skin_body() {
 
 std::uint64_t Session::state_hash() const {
   std::uint64_t hash = cloth::state_hash({});
-  for (const cloth::MassSpring& garment : garments_) hash = cloth::state_hash(garment.particles(), hash);
+  for (const auto& garment : garments_) hash = cloth::state_hash(garment->particles(), hash);
   return hash;
 }
 

@@ -1,7 +1,7 @@
 // A scene in motion: poses the body, follows it with colliders and pins, moves the garments, one frame at a time.
 #pragma once
 
-#include "cloth/mass_spring.h"
+#include "cloth/solver.h"
 #include "proxies/collider_set.h"
 #include "src/scene/scene.h"
 
@@ -61,7 +61,7 @@ public:
   const FrameTimes& times() const { return times_; }
   std::span<const Transform> world_from_joint() const { return world_; }
   const proxies::ColliderSet& colliders() const { return colliders_; }
-  const std::vector<cloth::MassSpring>& garments() const { return garments_; }
+  const cloth::Solver& garment(int g) const { return *garments_[g]; } ///< in the order of Scene::garments
   std::span<const Vec3f> body_positions() const { return body_positions_; }
   std::span<const Vec3f> body_normals() const { return body_normals_; }
   std::string_view backend() const { return query_->name(); }
@@ -76,7 +76,8 @@ private:
   std::vector<Transform> rest_inverse_; ///< joint_from_model at rest
   proxies::ColliderSet colliders_;
   std::unique_ptr<proxies::CollisionQuery> query_;
-  std::vector<cloth::MassSpring> garments_;
+  std::vector<std::unique_ptr<cloth::Solver>> garments_;
+  std::vector<double> friction_;                         ///< of each collider, the ground last
   std::vector<std::vector<Vec3>> pins_start_, pins_end_; ///< [garment][pin], world, m
   std::vector<rig::SkinMatrix> palette_;
   std::vector<Vec3f> body_positions_, body_normals_;

@@ -1,4 +1,4 @@
-#include "cloth/contact_response.h"
+#include "cloth/contact_search.h"
 #include "proxies/signed_distance.h"
 
 #include <gtest/gtest.h>
@@ -21,13 +21,23 @@ void respond_plainly(std::span<const proxies::Capsule> colliders, double offset,
     }
 }
 
+/// The report's response: on the surface, without normal velocity.
+void respond(ContactSearch& search, proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
+             Particles& particles) {
+  search.for_each_contact(query, s, pinned, particles, [&](int i, int, const proxies::Contact& contact, double push) {
+    particles.positions[i] += push * contact.normal;
+    Vec3& v = particles.velocities[i];
+    v -= v.dot(contact.normal) * contact.normal;
+  });
+}
+
 proxies::Capsule random_capsule(std::mt19937_64& random) {
   std::uniform_real_distribution<double> place(-0.5, 0.5), size(0.02, 0.15);
   const auto point = [&] { return Vec3(place(random), place(random), place(random)); };
   return {point(), point(), size(random)};
 }
 
-TEST(ContactResponse, IsThePlainResponseToTheBit) {
+TEST(ContactSearch, IsThePlainSearchToTheBit) {
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> place(-0.7, 0.7), speed(-2, 2);
   const double offset = 0.002, seconds = 1.0 / 60.0;
@@ -52,13 +62,13 @@ TEST(ContactResponse, IsThePlainResponseToTheBit) {
       Particles plain = fast;
       const std::vector<std::uint8_t> pinned(300, 0);
       const proxies::SweptColliders colliders{start, end, std::nullopt};
-      ContactResponse response(offset);
-      response.begin_frame(*query, colliders, fast, seconds);
+      ContactSearch search(offset);
+      search.begin_frame(*query, colliders, fast, seconds);
       for (int k = 0; k < substeps; ++k) {
         const double s = (k + 1.0) / substeps;
         for (Particles* particles : {&fast, &plain})
           for (int i = 0; i < 300; ++i) particles->positions[i] += particles->velocities[i] * (seconds / substeps);
-        response.respond(*query, s, pinned, fast);
+        respond(search, *query, s, pinned, fast);
         proxies::colliders_at(colliders, s, placed);
         respond_plainly(placed, offset, plain);
       }
@@ -70,24 +80,24 @@ TEST(ContactResponse, IsThePlainResponseToTheBit) {
           ASSERT_LT((fast.positions[i] - plain.positions[i]).norm(), 1e-9) << "trial " << trial << " particle " << i;
         }
       }
-      contacts += response.counts().contacts;
-      queries += response.counts().queries;
+      contacts += search.counts().contacts;
+      queries += search.counts().queries;
     }
     EXPECT_GT(contacts, 2000);
     EXPECT_LT(queries, 20LL * 300 * 8 * substeps / 2);
   }
 }
 
-TEST(ContactResponse, ProjectsOntoSphereAndRoundedCylinder) {
+TEST(ContactSearch, ProjectsOntoSphereAndRoundedCylinder) {
   const auto query = proxies::make_query(proxies::Backend::fcl);
   const std::vector<proxies::Capsule> colliders = {{Vec3::Zero(), Vec3::Zero(), 0.1}, {{1, 0, 0}, {1, 1, 0}, 0.2}};
   Particles particles;
   particles.positions = {{0.05, 0, 0}, {1.1, 0.5, 0}, {1, 1.1, 0}, {1, 0.5, 0}, {3, 0, 0}, {0, 0, 0}};
   particles.velocities.assign(6, Vec3(-1, -2, 0.5));
   const std::vector<std::uint8_t> pinned = {0, 0, 0, 0, 0, 0};
-  ContactResponse response(0.0);
-  response.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0 / 60);
-  response.respond(*query, 1.0, pinned, particles);
+  ContactSearch search(0.0);
+  search.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0 / 60);
+  respond(search, *query, 1.0, pinned, particles);
   EXPECT_LT((particles.positions[0] - Vec3(0.1, 0, 0)).norm(), 1e-14);
   EXPECT_LT((particles.velocities[0] - Vec3(0, -2, 0.5)).norm(), 1e-14);
   EXPECT_LT((particles.positions[1] - Vec3(1.2, 0.5, 0)).norm(), 1e-14);
@@ -99,28 +109,28 @@ TEST(ContactResponse, ProjectsOntoSphereAndRoundedCylinder) {
   EXPECT_LT((particles.positions[5] - Vec3(0, 0.1, 0)).norm(), 1e-14) << "in the centre: up";
 }
 
-TEST(ContactResponse, PinnedParticlesAreLeftAlone) {
+TEST(ContactSearch, PinnedParticlesAreLeftAlone) {
   const auto query = proxies::make_query(proxies::Backend::brute);
   const std::vector<proxies::Capsule> colliders = {{Vec3::Zero(), Vec3::Zero(), 0.1}};
   Particles particles;
   particles.positions = {{0.05, 0, 0}};
   particles.velocities = {{1, 2, 3}};
-  ContactResponse response(0.0);
-  response.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0 / 60);
-  response.respond(*query, 1.0, std::vector<std::uint8_t>{1}, particles);
+  ContactSearch search(0.0);
+  search.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0 / 60);
+  respond(search, *query, 1.0, std::vector<std::uint8_t>{1}, particles);
   EXPECT_EQ(particles.positions[0], Vec3(0.05, 0, 0));
   EXPECT_EQ(particles.velocities[0], Vec3(1, 2, 3));
 }
 
-TEST(ContactResponse, TheGroundHoldsEvenWhatFallsFromFarAway) {
+TEST(ContactSearch, TheGroundHoldsEvenWhatFallsFromFarAway) {
   const auto query = proxies::make_query(proxies::Backend::fcl);
   Particles particles;
   particles.positions = {{0, 5, 0}};
   particles.velocities = {{0, -1, 0}};
-  ContactResponse response(0.001);
-  response.begin_frame(*query, {{}, {}, proxies::Plane{Vec3::UnitY(), 0.0}}, particles, 1.0 / 60);
+  ContactSearch search(0.001);
+  search.begin_frame(*query, {{}, {}, proxies::Plane{Vec3::UnitY(), 0.0}}, particles, 1.0 / 60);
   particles.positions[0].y() = -3.0; // much farther than its speed promised
-  response.respond(*query, 1.0, std::vector<std::uint8_t>{0}, particles);
+  respond(search, *query, 1.0, std::vector<std::uint8_t>{0}, particles);
   EXPECT_NEAR(particles.positions[0].y(), 0.001, 1e-15);
 }
 
