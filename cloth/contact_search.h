@@ -76,6 +76,16 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
       seen_at_[i] = particles.positions[i];
       ++counts_.contacts;
     }
+    if (particle_travel_[i] <= margin_) continue;
+    // Pushed out of reach of what was looked for: ask everything, this once. The next substep searches anew.
+    const int colliders = colliders_.size() + (colliders_.ground ? 1 : 0);
+    for (int collider = 0; collider < colliders; ++collider) {
+      const proxies::Contact contact = query.contact(particles.positions[i], collider);
+      ++counts_.queries;
+      if (contact.distance >= offset_) continue;
+      on_contact(i, collider, contact, offset_ - contact.distance);
+      ++counts_.contacts;
+    }
   }
 }
 

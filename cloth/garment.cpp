@@ -9,6 +9,8 @@
 namespace tutu::cloth {
 namespace {
 
+constexpr double k_shortest_spring = 1e-6; // m; a cell is far larger, or it has no area and is refused
+
 struct Layout {
   int rows = 0, columns = 0;
   bool woven_shut = false;
@@ -95,6 +97,7 @@ void add_springs(const Layout& layout, const Fabric& fabric, Garment& garment) {
   // L^2 stiff.
   const auto add = [&](SpringKind kind, int i, int j, double sheet_stiffness, double area) {
     const double length = (layout.positions[i] - layout.positions[j]).norm();
+    if (!(length > k_shortest_spring)) return; // a fold at rest: two apart are in one place, and nothing to hold
     garment.springs.push_back({i, j, length, sheet_stiffness * area / (length * length), kind});
   };
   const int rows = layout.rows, columns = layout.columns;
@@ -122,7 +125,7 @@ void add_springs(const Layout& layout, const Fabric& fabric, Garment& garment) {
 
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
-      if (reaches(column + 2) && columns > 4)
+      if (reaches(column + 2) && (!layout.woven_shut || columns > 4)) // of four around, two apart is two apart twice
         add(SpringKind::bend, layout.at(row, column), layout.at(row, column + 2), fabric.bend,
             0.5 * (cell_area(layout, row, column) + cell_area(layout, row, column + 1) +
                    cell_area(layout, row - 1, column) + cell_area(layout, row - 1, column + 1)));
@@ -141,11 +144,11 @@ void add_pins(const GarmentDescription& description, Garment& garment) {
     Attachment attachment = description.attachments[a];
     const std::string place = "/attachments/" + std::to_string(a);
     const auto resolve = [&](int& first, int& last, int count, const char* what) {
+      const std::string found = std::string(what) + " " + std::to_string(first) + " to " + std::to_string(last);
       first = resolved(first, count);
       last = resolved(last, count);
       if (first < 0 || last >= count || first > last)
-        throw InputError(description.file, place,
-                         std::string(what) + " " + std::to_string(first) + " to " + std::to_string(last),
+        throw InputError(description.file, place, found,
                          "a range within 0.." + std::to_string(count - 1) + " (or counted from the end, -1 the last)");
     };
     resolve(attachment.first_row, attachment.last_row, garment.rows, "rows");

@@ -50,6 +50,7 @@ std::optional<Divergence> MassSpring::step(const FrameInput& input, proxies::Col
     integrate(input, h);
     follow_pins(*garment_, input, s, h, particles_);
     time = lap(time, times_.cloth);
+    if (!is_in_world(particles_)) return find_divergence(*garment_, substep, particles_.positions);
     contacts_.for_each_contact(query, s, pinned_, particles_, stop_at_surface);
     time = lap(time, times_.contact);
     close_seams(*garment_, pinned_, particles_);

@@ -24,6 +24,32 @@ Spread spread(std::vector<double> samples) {
   return result;
 }
 
+void SpreadGatherer::add(double sample) {
+  ++count_;
+  sum_ += sample;
+  max_ = std::max(max_, sample);
+  const double octave = sample > 0.0 ? std::log2(sample) - k_lowest_octave : -1.0;
+  if (octave < 0.0) {
+    ++below_;
+    return;
+  }
+  const auto bin = static_cast<std::size_t>(std::min(octave * k_bins_an_octave, static_cast<double>(bins_.size() - 1)));
+  ++bins_[bin];
+}
+
+Spread SpreadGatherer::spread() const {
+  if (count_ == 0) return {};
+  Spread result{max_, 0.0, sum_ / static_cast<double>(count_)};
+  const auto rank = static_cast<std::int64_t>(std::ceil(0.99 * static_cast<double>(count_)));
+  std::int64_t seen = below_;
+  for (std::size_t bin = 0; seen < rank && bin < bins_.size(); ++bin) {
+    seen += bins_[bin];
+    const double upper = std::exp2(k_lowest_octave + static_cast<double>(bin + 1) / k_bins_an_octave);
+    if (seen >= rank) result.p99 = std::min(upper, max_);
+  }
+  return result;
+}
+
 std::vector<double> stretch_of(const Garment& garment, const Particles& particles) {
   std::vector<double> stretch(garment.structural_count);
   for (int k = 0; k < garment.structural_count; ++k) {

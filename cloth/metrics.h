@@ -5,6 +5,7 @@
 #include "cloth/particles.h"
 #include "proxies/shapes.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -20,6 +21,21 @@ struct Spread {
 /// `samples`.
 double percentile(std::vector<double>& samples, double share);
 Spread spread(std::vector<double> samples);
+
+/// Gathers any number of samples >= 0 in a fixed amount of memory. Largest and mean are exact; the percentile is that
+/// of a histogram with 64 bins an octave, so it is at most 1.1 % too large.
+class SpreadGatherer {
+public:
+  void add(double sample);
+  Spread spread() const;
+  std::int64_t count() const { return count_; }
+
+private:
+  static constexpr int k_bins_an_octave = 64, k_lowest_octave = -40, k_highest_octave = 24;
+  std::vector<std::int64_t> bins_ = std::vector<std::int64_t>(k_bins_an_octave * (k_highest_octave - k_lowest_octave));
+  std::int64_t count_ = 0, below_ = 0; ///< below: samples under 2^k_lowest_octave, zero among them
+  double sum_ = 0.0, max_ = 0.0;
+};
 
 /// |length / rest length - 1| of every structural spring.
 std::vector<double> stretch_of(const Garment& garment, const Particles& particles);

@@ -16,8 +16,9 @@ struct Particles {
   int count() const { return static_cast<int>(positions.size()); }
 };
 
-/// FNV-1a over the bits of positions and velocities: two runs are the same run exactly when their hashes agree (up to
-/// 2^-64). Negative and positive zero differ. Chain several garments by passing the hash so far.
+/// Over the bits of positions and velocities, in the manner of FNV-1a but a number at a time: two runs are the same run
+/// exactly when their hashes agree (up to 2^-64). Negative and positive zero differ. Chain several garments by passing
+/// the hash so far.
 std::uint64_t state_hash(const Particles& particles, std::uint64_t so_far = 14695981039346656037ull);
 
 } // namespace tutu::cloth

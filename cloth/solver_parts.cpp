@@ -1,5 +1,7 @@
 #include "cloth/solver_parts.h"
 
+#include "cloth/tolerances.h"
+
 #include <cmath>
 
 namespace tutu::cloth {
@@ -28,6 +30,34 @@ void close_seams(const Garment& garment, std::span<const std::uint8_t> pinned, P
       a = b = (1.0 - share) * a + share * b;
     }
   }
+}
+
+namespace {
+
+bool is_in_world(const Vec3& v) { // false for what is no number
+  return std::abs(v.x()) <= k_world_radius && std::abs(v.y()) <= k_world_radius && std::abs(v.z()) <= k_world_radius;
+}
+
+} // namespace
+
+bool is_in_world(const Particles& particles) {
+  bool inside = true;
+  for (const Vec3& p : particles.positions) inside = inside && is_in_world(p);
+  for (const Vec3& v : particles.velocities) inside = inside && is_in_world(v); // else it will leave within a second
+  return inside;
+}
+
+Divergence find_divergence(const Garment& garment, int substep, std::span<const Vec3> positions) {
+  std::vector<Vec3> forces(positions.size(), Vec3::Zero());
+  const std::optional<int> bad = add_spring_forces(garment, positions, forces);
+  Divergence divergence = describe_divergence(garment, bad.value_or(0), substep, positions, forces);
+  for (std::size_t i = 0; !bad && i < positions.size(); ++i) {
+    if (is_in_world(positions[i])) continue;
+    divergence.particle = static_cast<int>(i);
+    divergence.position = positions[i];
+    break;
+  }
+  return divergence;
 }
 
 Divergence describe_divergence(const Garment& garment, int bad_spring, int substep, std::span<const Vec3> positions,

@@ -19,7 +19,15 @@ void follow_pins(const Garment& garment, const FrameInput& input, double s, doub
 /// Both sides of a seam meet at their common centre of mass with their common momentum; a pinned side leads.
 void close_seams(const Garment& garment, std::span<const std::uint8_t> pinned, Particles& particles);
 
-/// Says where a run broke. `forces`: those of the springs at `positions`, N.
+/// Whether every coordinate is a number and no particle has left the world (k_world_radius). Collision queries need
+/// that.
+bool is_in_world(const Particles& particles);
+
+/// Says where a run broke: at the first structural spring whose length is not within (1 + k_diverged_stretch) of its
+/// rest length, or at any other particle that is out of the world.
+Divergence find_divergence(const Garment& garment, int substep, std::span<const Vec3> positions);
+
+/// The same for a known spring. `forces`: those of the springs at `positions`, N.
 Divergence describe_divergence(const Garment& garment, int bad_spring, int substep, std::span<const Vec3> positions,
                                std::span<const Vec3> forces);
 

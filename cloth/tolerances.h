@@ -8,6 +8,10 @@ namespace tutu::cloth {
 /// few substeps.
 inline constexpr double k_diverged_stretch = 10.0;
 
+/// m. A particle farther from the origin than this has been thrown there: farther than any stage, and near enough for
+/// collision queries to be exact to a micrometre.
+inline constexpr double k_world_radius = 1e6;
+
 /// m. Least distance a particle may wander from where its candidates were found before they are found again. Larger
 /// than a resting particle's tremble, so that still cloth searches once a frame; smaller than a limb, so that
 /// candidates stay few.

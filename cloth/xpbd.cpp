@@ -115,9 +115,7 @@ std::optional<Divergence> Xpbd::check(int substep) {
     const Spring& spring = garment_->springs[k];
     const double length = (particles_.positions[spring.j] - particles_.positions[spring.i]).norm();
     if (length <= (1.0 + k_diverged_stretch) * spring.rest_length) continue; // false for a length that is no number
-    std::vector<Vec3> forces(particles_.positions.size(), Vec3::Zero());
-    add_spring_forces(*garment_, particles_.positions, forces);
-    return describe_divergence(*garment_, k, substep, particles_.positions, forces);
+    return find_divergence(*garment_, substep, particles_.positions);
   }
   return std::nullopt;
 }
@@ -142,6 +140,7 @@ std::optional<Divergence> Xpbd::step(const FrameInput& input, proxies::Collision
     solve_constraints(h);
     close_seams(*garment_, pinned_, particles_);
     time = lap(time, times_.cloth);
+    if (!is_in_world(particles_)) return find_divergence(*garment_, substep, particles_.positions);
     contacts_.for_each_contact(query, static_cast<double>(substep + 1) / input.substeps, pinned_, particles_, rub);
     time = lap(time, times_.contact);
     for (int i = 0; i < particles_.count(); ++i)

@@ -24,33 +24,38 @@ std::string exactly(const Vec3& v) {
   throw std::invalid_argument("collision query: found " + found + ", expected " + expected);
 }
 
-constexpr const char* k_finite_point = "finite coordinates";
+/// m. FCL's tree multiplies coordinates and crashes when they overflow; far below that, and beyond every scene.
+constexpr double k_farthest = 1e12;
+constexpr const char* k_finite_point = "finite coordinates within +-1e12 m";
+
+bool in_range(double value) { return std::abs(value) <= k_farthest; } // false for what is no number
+bool in_range(const Vec3& v) { return in_range(v.x()) && in_range(v.y()) && in_range(v.z()); }
 
 } // namespace
 
 void require_usable(const Capsule& capsule, int index) {
-  if (is_finite(capsule.a) && is_finite(capsule.b) && std::isfinite(capsule.radius) && capsule.radius > 0.0) return;
+  if (in_range(capsule.a) && in_range(capsule.b) && in_range(capsule.radius) && capsule.radius > 0.0) return;
   refuse("collider " + std::to_string(index) + " Capsule{" + exactly(capsule.a) + ", " + exactly(capsule.b) + ", " +
              exactly(capsule.radius) + '}',
-         "finite end points and a radius above 0");
+         "end points within +-1e12 m and a radius above 0");
 }
 
 void require_usable(const std::optional<Plane>& ground) {
   if (!ground) return;
   const bool is_unit = std::abs(ground->normal.norm() - 1.0) <= k_unit_tolerance;
-  if (is_unit && std::isfinite(ground->offset)) return;
+  if (is_unit && in_range(ground->offset)) return;
   refuse("ground Plane{" + exactly(ground->normal) + ", " + exactly(ground->offset) + '}',
          "a unit normal and a finite offset");
 }
 
 void require_usable(const Vec3& point) {
-  if (!is_finite(point)) refuse("point " + exactly(point), k_finite_point);
+  if (!in_range(point)) refuse("point " + exactly(point), k_finite_point);
 }
 
 void require_usable(std::span<const Vec3> points, double reach) {
-  if (!(std::isfinite(reach) && reach >= 0.0)) refuse("reach " + exactly(reach), "a finite length, 0 or above");
+  if (!(in_range(reach) && reach >= 0.0)) refuse("reach " + exactly(reach), "a length from 0 to 1e12 m");
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (!is_finite(points[i])) refuse("point " + std::to_string(i) + ' ' + exactly(points[i]), k_finite_point);
+    if (!in_range(points[i])) refuse("point " + std::to_string(i) + ' ' + exactly(points[i]), k_finite_point);
 }
 
 } // namespace tutu::proxies

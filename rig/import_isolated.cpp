@@ -119,6 +119,9 @@ void check(const Import& import, const std::string& file) {
   for (const std::uint16_t slot : c.skin.slots) sound = sound && slot < c.skin.slot_joint.size();
   for (const Triangle& triangle : c.mesh.triangles)
     for (const std::uint32_t v : triangle) sound = sound && v < vertices;
+  for (const MeshPart& part : c.mesh.parts)
+    sound = sound && part.first_triangle <= c.mesh.triangles.size() &&
+            part.triangle_count <= c.mesh.triangles.size() - part.first_triangle;
   if (!sound) throw InputError(file, "", "a file that leads its reader astray", "a rigged character");
   c.skeleton.check(file);
 }

@@ -11,6 +11,9 @@ namespace {
 
 using nlohmann::json;
 
+constexpr double k_largest_number =
+    1e9; // any unit: no scene is that large, and products of a few stay far from overflow
+
 std::string shortened(const json& value) {
   constexpr std::size_t k_longest = 60;
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -39,9 +42,18 @@ std::string place_of(std::string_view text, std::size_t offset) {
 
 /// "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ..." -> "syntax error ...".
 std::string reason_of(const char* what) {
-  const std::string text = what;
+  std::string text = what;
+  if (const std::size_t bracket = text.find("] "); bracket != std::string::npos) text = text.substr(bracket + 2);
   const std::size_t position = text.find(": ");
   return position == std::string::npos ? text : text.substr(position + 2);
+}
+
+/// Where a number stands that is too large to be read: the parser says only its text, between quotes.
+std::string place_of_number(std::string_view text, const std::string& reason) {
+  const std::size_t start = reason.find('\''), end = reason.rfind('\'');
+  if (start == std::string::npos || end <= start) return "";
+  const std::size_t offset = text.find(reason.substr(start + 1, end - start - 1));
+  return offset == std::string_view::npos ? "" : place_of(text, offset + 1);
 }
 
 } // namespace
@@ -70,7 +82,8 @@ JsonValue JsonValue::parse(std::string_view text, std::string name) {
   } catch (const json::parse_error& error) {
     throw InputError(document->file, place_of(text, error.byte), reason_of(error.what()), "JSON");
   } catch (const json::exception& error) {
-    throw InputError(document->file, "", reason_of(error.what()), "JSON with finite numbers");
+    const std::string reason = reason_of(error.what());
+    throw InputError(document->file, place_of_number(text, reason), reason, "JSON with finite numbers");
   }
   const json* root = &document->root;
   return {std::move(document), root, ""};
@@ -143,7 +156,7 @@ bool JsonValue::boolean() const {
 double JsonValue::number() const {
   if (!node_->is_number()) throw error("a number");
   const double value = node_->get<double>();
-  if (!std::isfinite(value)) throw error("a finite number");
+  if (!(std::abs(value) <= k_largest_number)) throw error("a finite number within +-1e9");
   return value;
 }
 

@@ -41,7 +41,7 @@ public:
   std::string string() const;
   std::string string_among(std::initializer_list<std::string_view> choices) const;
   bool boolean() const;
-  double number() const; ///< finite
+  double number() const; ///< finite, within +-1e9
   double number_in(double lowest, double highest) const;
   double positive() const;     ///< > 0
   double non_negative() const; ///< >= 0

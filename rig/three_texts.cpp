@@ -68,7 +68,7 @@ std::vector<double> numbers(const Text& text, const Text::Line& line) {
   std::string_view rest = line.text;
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
     double value = 0.0;
-    if (!read_word(word, value) || !std::isfinite(value))
+    if (!read_word(word, value) || !(std::abs(value) <= 1e9))
       throw text.error(line, "\"" + std::string(word.substr(0, 40)) + "\"", "a finite number");
     values.push_back(value);
   }

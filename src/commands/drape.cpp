@@ -55,6 +55,7 @@ void add_drape(CLI::App& app, int& status) {
   options->scene.add_to(*command);
   command->add_option("-o,--out", options->out, "File to write, in place of the scene's own (SCENE.drape.json)");
   command->add_option("--seconds", options->seconds, "Longest simulated time")
+      ->check(finite_number())
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
   command->callback([options, &status] { status = run(*options); });

@@ -12,6 +12,7 @@
 #include "src/viewer/viewer.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
@@ -20,6 +21,8 @@ namespace tutu::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int k_most_frames = 10'000'000; // 46 hours of dance
 
 struct Options {
   SceneOptions scene;
@@ -33,13 +36,44 @@ struct Options {
   double yaw_degrees = 25.0, pitch_degrees = 8.0;
 };
 
+/// Refuses what cannot be carried out together, before anything long begins.
+void check(const Options& options) {
+  const fs::path out = options.out;
+  const std::string suffix = out.extension().string();
+  const std::vector<std::string> pictures = {".png", ".jpg", ".jpeg", ".gif", ".avi", ".mov", ".mkv", ".webm"};
+  if (!options.at.empty() && suffix == ".mp4") throw InputError("", "--out", options.out, "a folder for the pictures");
+  if (std::find(pictures.begin(), pictures.end(), suffix) != pictures.end())
+    throw InputError("", "--out", options.out, "a film (.mp4) or a folder");
+  if (!options.at.empty() && options.no_pictures)
+    throw InputError("", "--at", "it with --no-pictures", "one of the two");
+  for (const int frame : options.at)
+    if (options.frames && frame > *options.frames)
+      throw InputError("", "--at", std::to_string(frame), "at most --frames, " + std::to_string(*options.frames));
+  if (!options.json.empty()) (void)PendingFile(options.json); // a place that cannot be written is told now
+}
+
 /// "1280x720" -> {1280, 720}.
 std::pair<int, int> size_of(const std::string& text) {
-  int width = 0, height = 0, used = 0;
-  if (std::sscanf(text.c_str(), "%dx%d%n", &width, &height, &used) != 2 || used != static_cast<int>(text.size()) ||
-      width < 16 || height < 16 || width > 8192 || height > 8192)
-    throw InputError("", "--size", text, "WIDTHxHEIGHT, each from 16 to 8192");
+  const auto side = [](std::string_view digits) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    return error == std::errc() && end == digits.data() + digits.size() && value >= 16 && value <= 8192 ? value : 0;
+  };
+  const std::size_t cross = text.find('x');
+  const std::string_view all = text;
+  const int width = cross == std::string::npos ? 0 : side(all.substr(0, cross));
+  const int height = cross == std::string::npos ? 0 : side(all.substr(cross + 1));
+  if (width == 0 || height == 0) throw InputError("", "--size", text, "WIDTHxHEIGHT, each from 16 to 8192");
   return {width, height};
+}
+
+/// Once through the motion.
+int frames_of(const Scene& scene) {
+  const double frames = std::round(scene.clip.duration() * scene.description.frames_per_second);
+  if (!(frames <= k_most_frames))
+    throw InputError(scene.description.file.string(), "/motion", fmt::format("{:.6g} frames", frames),
+                     fmt::format("at most {}, or --frames", k_most_frames));
+  return std::max(1, static_cast<int>(frames));
 }
 
 const std::vector<std::pair<std::string, bool Layers::*>> k_layers = {
@@ -79,9 +113,6 @@ public:
     view_.emplace(scene);
 
     out_ = options.out;
-    if (out_.has_extension() && (out_.extension() != ".mp4" || !at_.empty()))
-      throw InputError("", "--out", out_.string(),
-                       at_.empty() ? "a film (.mp4) or a folder" : "a folder for the pictures");
     const bool film = at_.empty() && (out_.empty() ? ffmpeg_available() : out_.extension() == ".mp4");
     if (out_.empty()) out_ = film ? stem_ + ".mp4" : at_.empty() ? stem_ + "-frames" : ".";
     if (film) video_.emplace(out_, width, height, scene.description.frames_per_second);
@@ -144,8 +175,8 @@ int play_headless(const Options& options, const Scene& scene, const std::vector<
 
   const bool diverged = session.failure().has_value();
   const std::string written = diverged ? "" : pictures.finish();
-  if (!options.json.empty()) write_file(options.json, stats.json(session).dump(2) + "\n");
   fmt::print("{}", stats.text(session));
+  if (!options.json.empty()) write_file(options.json, stats.json(session).dump(2) + "\n");
   if (!written.empty()) fmt::print("wrote {}\n", written);
   if (diverged) fmt::print(stderr, "tutu: {}\n", session.failure()->message());
   if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", session.frame(), frames);
@@ -154,6 +185,7 @@ int play_headless(const Options& options, const Scene& scene, const std::vector<
 
 int run(const Options& options) {
   const bool headless = options.headless || !options.json.empty() || !options.at.empty() || !display_available();
+  check(options);
   if (headless) catch_interrupt();
   const Scene scene = options.scene.load();
   const auto start = draped_start(scene);
@@ -173,12 +205,12 @@ void add_play(CLI::App& app, int& status) {
   command->add_flag("--headless", options->headless,
                     "No window: render to a film (.mp4), or PNGs where there is no ffmpeg");
   command->add_option("--frames", options->frames, "Frames to play; once through the motion when left out")
-      ->check(CLI::Range(1, 10000000));
+      ->check(CLI::Range(1, k_most_frames));
   command->add_option("-o,--out", options->out, "Film (.mp4) or folder for PNGs");
   command->add_option("--json", options->json, "Write the figures of the run to this file (implies --headless)");
   command->add_option("--at", options->at, "Only pictures of these frames, as PNG (implies --headless)")
       ->delimiter(',')
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, k_most_frames));
   command->add_option("--show", options->show, "Layers to show besides the usual")
       ->delimiter(',')
       ->check(CLI::IsMember(layer_names()));
@@ -190,8 +222,11 @@ void add_play(CLI::App& app, int& status) {
       ->check(CLI::Range(1, 4))
       ->capture_default_str();
   command->add_option("--yaw", options->yaw_degrees, "Camera: degrees around the dancer, 0 from the front")
+      ->check(finite_number())
       ->capture_default_str();
-  command->add_option("--pitch", options->pitch_degrees, "Camera: degrees from above")->capture_default_str();
+  command->add_option("--pitch", options->pitch_degrees, "Camera: degrees from above")
+      ->check(finite_number())
+      ->capture_default_str();
   command->add_flag("--no-pictures", options->no_pictures, "Simulate only (with --headless or --json)");
   command->callback([options, &status] { status = run(*options); });
 }

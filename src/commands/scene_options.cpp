@@ -4,9 +4,19 @@
 #include "src/progress.h"
 #include "src/scene/session.h"
 
+#include <cmath>
 #include <fmt/format.h>
 
 namespace tutu::app {
+
+CLI::Validator finite_number() {
+  return {[](std::string& text) {
+            double value = 0.0;
+            const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+            return good ? std::string() : "found " + text + ", expected a finite number";
+          },
+          "FINITE"};
+}
 
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("scene", scene, "Scene file (.json); the shipped dance when left out");
@@ -46,7 +56,10 @@ std::optional<std::vector<std::vector<Vec3>>> draped_start(const Scene& scene) {
     fmt::print(stderr, "tutu: while draping, {}\n", result.failure->message());
     return std::nullopt;
   }
-  if (interrupted()) return std::nullopt;
+  if (interrupted()) {
+    fmt::print(stderr, "tutu: interrupted while draping\n");
+    return std::nullopt;
+  }
   return result.positions;
 }
 

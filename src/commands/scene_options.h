@@ -10,6 +10,9 @@
 
 namespace tutu::app {
 
+/// For options with a real value: CLI11 reads "nan" and lets it through every range.
+CLI::Validator finite_number();
+
 /// Options that change a scene's own settings.
 struct SceneOptions {
   std::string scene; ///< empty: the default scene

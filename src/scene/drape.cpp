@@ -51,7 +51,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   // Everything becomes numbers, and numbers become a hash: as good as comparing the files, and blind to their layout.
   // Rounded far below any length that matters: another processor's sine may differ in its last bit.
   cloth::Particles numbers;
-  const auto rounded = [](double v) { return std::round(v * 1e8); };
+  const auto rounded = [](double v) { return std::round(v * 1e8) + 0.0; };
   const auto add = [&](double a, double b = 0.0, double c = 0.0) {
     numbers.positions.emplace_back(rounded(a), rounded(b), rounded(c));
   };

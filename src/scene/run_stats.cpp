@@ -22,12 +22,14 @@ void RunStats::add(const Session& session) {
   for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
     const cloth::Garment& garment = scene_->garments[g];
     const cloth::Particles& particles = session.garment(static_cast<int>(g)).particles();
-    for (const double depth : cloth::penetration_of(garment, particles, colliders.end, colliders.ground))
-      depths_mm_.push_back(1000.0 * depth);
-    for (const double stretch : cloth::stretch_of(garment, particles)) stretches_.push_back(stretch);
+    for (const double depth : cloth::penetration_of(garment, particles, colliders.end, colliders.ground)) {
+      depths_mm_.add(1000.0 * depth);
+      inside_ += depth > k_inside_depth;
+    }
+    for (const double stretch : cloth::stretch_of(garment, particles)) stretches_.add(stretch);
     History& history = history_[g];
     if (frames_ >= 2)
-      jitters_.push_back(
+      jitters_.add(
           cloth::jitter_of(garment, history.before_last, history.last, particles.positions, session.frame_seconds()));
     history.before_last.swap(history.last);
     history.last = particles.positions;
@@ -38,24 +40,22 @@ void RunStats::add(const Session& session) {
 nlohmann::json RunStats::json(const Session& session) const {
   nlohmann::json ms;
   for (const Stage& stage : stages_) ms[stage.name] = {{"median", median_of(stage.ms)}, {"p99", p99_of(stage.ms)}};
-  const auto inside =
-      std::count_if(depths_mm_.begin(), depths_mm_.end(), [](double mm) { return mm > 1000.0 * k_inside_depth; });
-  nlohmann::json result = {
-      {"scene", scene_->name()},
-      {"frames", frames_},
-      {"seed", 0}, // nothing in a run is random
-      {"solver", name_of(scene_->description.solver)},
-      {"substeps", scene_->description.substeps},
-      {"backend", session.backend()},
-      {"threads", 1},
-      {"ms_per_frame", ms},
-      {"penetration_mm", {{"proxies", json_of(cloth::spread(depths_mm_))}}},
-      {"share_inside", depths_mm_.empty() ? 0.0 : static_cast<double>(inside) / static_cast<double>(depths_mm_.size())},
-      {"stretch", json_of(cloth::spread(stretches_))},
-      {"jitter", cloth::spread(jitters_).mean},
-      {"diverged", session.failure().has_value()},
-      {"recoveries", 0},
-      {"state_hash", fmt::format("{:016x}", session.state_hash())}};
+  nlohmann::json result = {{"scene", scene_->name()},
+                           {"frames", frames_},
+                           {"seed", 0}, // nothing in a run is random
+                           {"solver", name_of(scene_->description.solver)},
+                           {"substeps", scene_->description.substeps},
+                           {"backend", session.backend()},
+                           {"threads", 1},
+                           {"ms_per_frame", ms},
+                           {"penetration_mm", {{"proxies", json_of(depths_mm_.spread())}}},
+                           {"share_inside", static_cast<double>(inside_) /
+                                                static_cast<double>(std::max<std::int64_t>(1, depths_mm_.count()))},
+                           {"stretch", json_of(stretches_.spread())},
+                           {"jitter", jitters_.spread().mean},
+                           {"diverged", session.failure().has_value()},
+                           {"recoveries", 0},
+                           {"state_hash", fmt::format("{:016x}", session.state_hash())}};
   if (session.failure()) result["failure"] = session.failure()->message();
   return result;
 }
@@ -71,11 +71,11 @@ std::string RunStats::text(const Session& session) const {
   text += "ms a frame, median (p99):";
   for (const Stage& stage : stages_)
     text += fmt::format("  {} {:.3f} ({:.3f})", stage.name, median_of(stage.ms), p99_of(stage.ms));
-  const cloth::Spread depth = cloth::spread(depths_mm_), stretch = cloth::spread(stretches_);
+  const cloth::Spread depth = depths_mm_.spread(), stretch = stretches_.spread();
   text += fmt::format(
       "\ninto proxies: {:.2f} mm at most, {:.3f} mean   stretch: {:.1f} % at most, {:.1f} p99, {:.1f} mean   "
       "jitter: {:.2f} m/s2\nstate hash {:016x}\n",
-      depth.max, depth.mean, 100 * stretch.max, 100 * stretch.p99, 100 * stretch.mean, cloth::spread(jitters_).mean,
+      depth.max, depth.mean, 100 * stretch.max, 100 * stretch.p99, 100 * stretch.mean, jitters_.spread().mean,
       session.state_hash());
   return text;
 }

@@ -21,7 +21,7 @@ public:
 
   void add(const Session& session);
 
-  /// The members that DESIGN's `--json` of play, bake and bench holds. Lengths in mm where the name says so.
+  /// What `play --json` writes. Lengths in mm where the name says so.
   nlohmann::json json(const Session& session) const;
   /// The same for a person, some lines.
   std::string text(const Session& session) const;
@@ -38,7 +38,8 @@ private:
   const Scene* scene_;
   std::vector<Stage> stages_ = {{"pose", {}},    {"proxies", {}}, {"broad", {}}, {"cloth", {}},
                                 {"contact", {}}, {"skin", {}},    {"total", {}}};
-  std::vector<double> depths_mm_, stretches_, jitters_;
+  cloth::SpreadGatherer depths_mm_, stretches_, jitters_;
+  std::int64_t inside_ = 0; ///< samples deeper than k_inside_depth
   std::vector<History> history_;
   int frames_ = 0;
 };

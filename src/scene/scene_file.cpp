@@ -9,13 +9,22 @@ namespace fs = std::filesystem;
 
 /// A path of the scene, from the scene's folder.
 fs::path path_in(const JsonValue& json) {
-  const fs::path path = json.string();
-  if (path.empty()) throw json.error("a path");
-  return (fs::path(json.file()).parent_path() / path).lexically_normal();
+  const std::string text = json.string();
+  if (text.empty() || text.find('\0') != std::string::npos) throw json.error("a path");
+  return (fs::path(json.file()).parent_path() / text).lexically_normal();
+}
+
+/// The same for a file that is read.
+fs::path existing_in(const JsonValue& json) {
+  const fs::path path = path_in(json);
+  if (!fs::is_regular_file(path))
+    throw json.error("no file " + path.string(), "the path of a file, from the scene's folder");
+  return path;
 }
 
 Motion read_motion(const JsonValue& json) {
-  if (json.is_string()) return ClipMotion{path_in(json), std::nullopt};
+  if (json.is_string()) return ClipMotion{existing_in(json), std::nullopt};
+  if (!json.is_object()) throw json.error("a clip's path, or an object with clip, animation or texts");
   json.only_keys({"clip", "retarget_from", "animation", "texts"});
   const auto clip = json.find("clip"), animation = json.find("animation"), texts = json.find("texts");
   if (int{clip.has_value()} + int{animation.has_value()} + int{texts.has_value()} != 1)
@@ -23,8 +32,8 @@ Motion read_motion(const JsonValue& json) {
   if (const auto from = json.find("retarget_from"); from && !clip) throw from->error("it beside a clip only");
 
   if (clip) {
-    ClipMotion motion{path_in(*clip), std::nullopt};
-    if (const auto from = json.find("retarget_from")) motion.retarget_from = path_in(*from);
+    ClipMotion motion{existing_in(*clip), std::nullopt};
+    if (const auto from = json.find("retarget_from")) motion.retarget_from = existing_in(*from);
     return motion;
   }
   if (animation) {
@@ -33,15 +42,16 @@ Motion read_motion(const JsonValue& json) {
   }
   texts->only_keys({"translations", "rotations", "times", "joints"});
   rig::ThreeTexts files{
-      path_in(texts->at("translations")), path_in(texts->at("rotations")), path_in(texts->at("times")), {}};
-  if (const auto joints = texts->find("joints")) files.joints = path_in(*joints);
+      existing_in(texts->at("translations")), existing_in(texts->at("rotations")), existing_in(texts->at("times")), {}};
+  if (const auto joints = texts->find("joints")) files.joints = existing_in(*joints);
   return files;
 }
 
 GarmentEntry read_garment_entry(const JsonValue& json) {
-  if (json.is_string()) return {path_in(json)};
+  if (json.is_string()) return {existing_in(json)};
+  if (!json.is_object()) throw json.error("a garment's path, or an object with file, scale and offset");
   json.only_keys({"file", "scale", "offset"});
-  GarmentEntry entry{path_in(json.at("file"))};
+  GarmentEntry entry{existing_in(json.at("file"))};
   if (const auto scale = json.find("scale")) {
     entry.scale = scale->is_number() ? Vec3(Vec3::Constant(scale->positive())) : scale->vec3();
     if (!(entry.scale.minCoeff() > 0.0)) throw scale->error("factors above 0");
@@ -60,16 +70,16 @@ SceneDescription read_scene(const fs::path& file) {
   const JsonValue character = json.at("character");
   if (character.is_object()) {
     character.only_keys({"file", "max_influences"});
-    scene.character = path_in(character.at("file"));
+    scene.character = existing_in(character.at("file"));
     if (const auto most = character.find("max_influences")) {
       scene.max_influences = most->integer_in(4, 8);
       if (scene.max_influences != 4 && scene.max_influences != 8) throw most->error("4 or 8");
     }
   } else {
-    scene.character = path_in(character);
+    scene.character = existing_in(character);
   }
   scene.motion = read_motion(json.at("motion"));
-  if (const auto proxies = json.find("proxies")) scene.proxies = path_in(*proxies);
+  if (const auto proxies = json.find("proxies")) scene.proxies = existing_in(*proxies);
   if (const auto garments = json.find("garments"))
     for (const JsonValue& garment : garments->items()) scene.garments.push_back(read_garment_entry(garment));
 
@@ -77,6 +87,7 @@ SceneDescription read_scene(const fs::path& file) {
     if (ground->is_boolean()) {
       if (!ground->boolean()) scene.ground_height.reset();
     } else {
+      if (!ground->is_object()) throw ground->error("true, false, or an object with height");
       ground->only_keys({"height"});
       scene.ground_height = ground->at("height").number();
     }

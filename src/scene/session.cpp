@@ -31,9 +31,8 @@ std::optional<proxies::Plane> ground_of(const SceneDescription& description) {
 
 std::string SessionFailure::message() const {
   const Vec3& p = divergence.position;
-  return fmt::format("{} diverged in frame {} (t = {:.4f} s, substep {}): an edge at particle {} ({:.3f}, {:.3f}, "
-                     "{:.3f}) is stretched by "
-                     "{:.0f} %; the largest force is {:.3g} N on particle {}",
+  return fmt::format("{} diverged in frame {} (t = {:.4f} s, substep {}): an edge at particle {} ({:.6g}, {:.6g}, "
+                     "{:.6g}) is stretched by {:.6g} %; the largest force is {:.3g} N on particle {}",
                      garment, frame, time, divergence.substep, divergence.particle, p.x(), p.y(), p.z(),
                      100.0 * divergence.stretch, divergence.strongest_force, divergence.strongest_particle);
 }
@@ -72,18 +71,21 @@ void Session::place_pins(std::vector<std::vector<Vec3>>& targets) const {
 }
 
 void Session::start(const std::vector<std::vector<Vec3>>& garment_positions) {
+  start_positions_ = garment_positions;
   start_time_ = 0.0;
   frame_ = 0;
   failure_.reset();
   times_ = {};
   pose_at(0.0);
+  start_world_ = world_;
   colliders_.reset(world_);
   place_pins(pins_end_);
   for (std::size_t g = 0; g < garments_.size(); ++g) garments_[g]->reset(garment_positions[g]);
 }
 
 void Session::jump(double time) {
-  const std::vector<Transform> before = world_;
+  const bool failed = failure_.has_value(); // then what there is cannot be carried along: the start can
+  const std::vector<Transform> before = failed ? start_world_ : world_;
   start_time_ = time - frame_ * frame_seconds();
   failure_.reset();
   pose_at(time);
@@ -92,7 +94,7 @@ void Session::jump(double time) {
   for (std::size_t g = 0; g < garments_.size(); ++g) {
     const int joint = scene_->attachment_joints[g].empty() ? 0 : scene_->attachment_joints[g].front();
     const Transform carry = world_[joint] * before[joint].inverse();
-    std::vector<Vec3> positions = garments_[g]->particles().positions;
+    std::vector<Vec3> positions = failed ? start_positions_[g] : garments_[g]->particles().positions;
     for (Vec3& p : positions) p = carry * p;
     garments_[g]->reset(positions);
   }

@@ -5,6 +5,7 @@
 #include "proxies/collider_set.h"
 #include "src/scene/scene.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -41,7 +42,7 @@ public:
   void start(const std::vector<std::vector<Vec3>>& garment_positions);
 
   /// Jumps to `time`: the body takes its pose there, and each garment is carried along rigidly with the joint that
-  /// holds it and is at rest, so that the jump is never seen as a velocity.
+  /// holds it and is at rest, so that the jump is never seen as a velocity. After a failure the start is carried there.
   void jump(double time);
 
   /// One frame of the clip. Does nothing once it has failed.
@@ -77,7 +78,9 @@ private:
   proxies::ColliderSet colliders_;
   std::unique_ptr<proxies::CollisionQuery> query_;
   std::vector<std::unique_ptr<cloth::Solver>> garments_;
-  std::vector<double> friction_;                         ///< of each collider, the ground last
+  std::vector<double> friction_;                   ///< of each collider, the ground last
+  std::vector<std::vector<Vec3>> start_positions_; ///< of start(), and the joints then
+  std::vector<Transform> start_world_;
   std::vector<std::vector<Vec3>> pins_start_, pins_end_; ///< [garment][pin], world, m
   std::vector<rig::SkinMatrix> palette_;
   std::vector<Vec3f> body_positions_, body_normals_;
