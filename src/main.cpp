@@ -15,6 +15,7 @@ int main(int argc, char** argv) {
   add_drape(app, status);
   add_inspect(app, status);
   add_mannequin(app, status);
+  add_bench(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,172 @@
+#include "rig/file_io.h"
+#include "src/bench/bench_metrics.h"
+#include "src/bench/dancer_skirt.h"
+#include "src/commands/commands.h"
+#include "src/interrupt.h"
+#include "src/progress.h"
+#include "src/scene/session.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace tutu::app {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* k_dancer_skirt = "dancer-skirt";
+/// The first second starts the motion softly and lets the cloth fall; it is not measured.
+constexpr int k_first_measured = 60;
+
+struct Options {
+  std::string name = k_dancer_skirt, solver = "mass_spring", backend = "fcl", json;
+  int n = 30, frames = k_dancer_frames;
+  std::optional<int> substeps;
+  bool still = false;
+};
+
+struct Run {
+  std::vector<FrameMetrics> metrics; ///< of the measured frames
+  std::vector<double> ms;
+  std::optional<SessionFailure> failure;
+};
+
+Run run_scene(DancerSkirt& scene, int frames) {
+  Run run;
+  const double frame_seconds = 1.0 / k_dancer_frames_per_second;
+  std::vector<Vec3> last = scene.particles().positions, before_last = last;
+  Progress bar(fmt::format("{} {}", k_dancer_skirt, scene.setup().n), frames);
+  while (scene.frame() < frames && !interrupted()) {
+    const int frame = scene.frame();
+    before_last.swap(last);
+    last = scene.particles().positions;
+    if (const auto divergence = scene.advance()) {
+      const double moment = scene.time() + frame_seconds * (divergence->substep + 1) / scene.setup().substeps;
+      run.failure = SessionFailure{scene.skirt().name, *divergence, frame, moment};
+      break;
+    }
+    if (frame >= k_first_measured) {
+      run.metrics.push_back(
+          measure_frame(scene.skirt(), scene.particles(), last, before_last, scene.proxies(), frame_seconds));
+      run.ms.push_back(scene.cpu_ms());
+    }
+    bar.tick(scene.frame());
+  }
+  bar.finish();
+  return run;
+}
+
+double ns_per_particle_substep(const RunMetrics& m, const DancerSkirtSetup& setup) {
+  return 1e6 * m.ms_median / (static_cast<double>(setup.n) * setup.n * setup.substeps);
+}
+
+/// Figures that were never measured (a run that diverged early) are null.
+json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics& m, const Run& run) {
+  const auto figure = [&](double value) { return m.frames > 0 ? json(value) : json(nullptr); };
+  const auto mm = [&](double metres) { return figure(1000.0 * metres); };
+  const auto percent = [&](double share) { return figure(100.0 * share); };
+  json result = {{"name", options.name},
+                 {"n", options.n},
+                 {"solver", options.solver},
+                 {"substeps", scene.setup().substeps},
+                 {"backend", options.backend},
+                 {"still", options.still},
+                 {"offset_mm", 1000.0 * scene.skirt().fabric.contact_offset()},
+                 {"friction", 0.0}, // mass_spring knows none
+                 {"threads", 1},
+                 {"frames", scene.frame()},
+                 {"measured_frames", m.frames},
+                 {"pen_mm",
+                  {{"max", mm(m.pen.max)},
+                   {"median", mm(m.pen.median)},
+                   {"mean", mm(m.pen_mean)},
+                   {"share_over_1mm", figure(m.pen_share)}}},
+                 {"cen_mm", {{"max", mm(m.cen.max)}, {"median", mm(m.cen.median)}, {"mean", mm(m.cen_mean)}}},
+                 {"surf_mm", {{"max", mm(m.surf.max)}, {"median", mm(m.surf.median)}}},
+                 {"stretch_pct",
+                  {{"max", percent(m.stretch.max)},
+                   {"median", percent(m.stretch.median)},
+                   {"p99", percent(m.stretch_p99)},
+                   {"mean", percent(m.stretch_mean)}}},
+                 {"longest_pct", {{"max", percent(m.longest.max)}, {"median", percent(m.longest.median)}}},
+                 {"jitter", figure(m.jitter)},
+                 {"hem_y", figure(m.hem_y)},
+                 {"ms", {{"median", figure(m.ms_median)}, {"p99", figure(m.ms_p99)}}},
+                 {"ns_per_particle_substep", figure(ns_per_particle_substep(m, scene.setup()))},
+                 {"diverged", run.failure.has_value()},
+                 {"state_hash", fmt::format("{:016x}", cloth::state_hash(scene.particles()))}};
+  if (run.failure) result["failure"] = run.failure->message();
+  return result;
+}
+
+std::string text_of(const Options& options, const DancerSkirt& scene, const RunMetrics& m) {
+  std::string text =
+      fmt::format("{}{}: {} x {} particles, {} proxies, {} ({}), {} substeps a frame, contact offset {:.1f} mm\n",
+                  options.name, options.still ? " (still)" : "", options.n, options.n, k_dancer_proxies, options.solver,
+                  options.backend, scene.setup().substeps, 1000.0 * scene.skirt().fabric.contact_offset());
+  if (m.frames == 0)
+    return text + fmt::format("diverged or stopped before frame {}: nothing measured\n", k_first_measured);
+  const auto row = [&](const char* what, const char* unit, const OverFrames& worst, double scale,
+                       const std::string& more) {
+    text +=
+        fmt::format("{:<22}{:<5}{:>10.3f}{:>10.3f}   {}\n", what, unit, scale * worst.max, scale * worst.median, more);
+  };
+  text += fmt::format("{:<27}{:>10}{:>10}   (of a frame's worst, frames {} to {})\n", "", "max", "median",
+                      k_first_measured, k_first_measured + m.frames - 1);
+  row("particles in proxies", "mm", m.pen, 1e3,
+      fmt::format("mean {:.4f}, {:.2f} % deeper than 1 mm", 1e3 * m.pen_mean, 1e2 * m.pen_share));
+  row("centroids in proxies", "mm", m.cen, 1e3, fmt::format("mean {:.4f}", 1e3 * m.cen_mean));
+  row("surface in proxies", "mm", m.surf, 1e3, fmt::format("{} samples a triangle", k_surface_samples));
+  row("stretch", "%", m.stretch, 1e2,
+      fmt::format("p99 {:.2f}, mean {:.2f}", 1e2 * m.stretch_p99, 1e2 * m.stretch_mean));
+  row("stretch, longer only", "%", m.longest, 1e2, "");
+  text += fmt::format("jitter {:.2f} m/s2, hem at {:.3f} m\n{:.3f} ms a frame (p99 {:.3f}), {:.1f} ns a particle and "
+                      "substep\nstate hash {:016x}\n",
+                      m.jitter, m.hem_y, m.ms_median, m.ms_p99, ns_per_particle_substep(m, scene.setup()),
+                      cloth::state_hash(scene.particles()));
+  return text;
+}
+
+int run(const Options& options) {
+  catch_interrupt();
+  DancerSkirtSetup setup;
+  setup.n = options.n;
+  setup.substeps = options.substeps.value_or(default_mass_spring_substeps(options.n));
+  setup.backend = options.backend == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
+  setup.motion = options.still ? DancerMotion::still : DancerMotion::dance;
+  DancerSkirt scene(setup);
+  const Run done = run_scene(scene, options.frames);
+  const RunMetrics metrics = summarise(done.metrics, done.ms);
+  if (!options.json.empty()) write_file(options.json, json_of(options, scene, metrics, done).dump(2) + "\n");
+  fmt::print("{}", text_of(options, scene, metrics));
+  if (done.failure) fmt::print(stderr, "tutu: {}\n", done.failure->message());
+  if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", scene.frame(), options.frames);
+  return done.failure || interrupted() ? k_not_met : k_ok;
+}
+
+} // namespace
+
+void add_bench(CLI::App& app, int& status) {
+  CLI::App* command = app.add_subcommand("bench", "Run a standard scene and measure speed and accuracy together");
+  auto options = std::make_shared<Options>();
+  command->add_option("name", options->name, "The scene")->required()->check(CLI::IsMember({k_dancer_skirt}));
+  command->add_option("--n", options->n, "Particles along each side of the cloth")
+      ->check(CLI::Range(8, 1024))
+      ->capture_default_str();
+  command->add_option("--solver", options->solver, "What moves the cloth")
+      ->check(CLI::IsMember({"mass_spring"}))
+      ->capture_default_str();
+  command->add_option("--substeps", options->substeps, "Substeps a frame; as many as the solver needs when left out")
+      ->check(CLI::Range(1, 10000));
+  command->add_option("--backend", options->backend, "How particles ask colliders")
+      ->check(CLI::IsMember({"fcl", "brute"}))
+      ->capture_default_str();
+  command->add_option("--frames", options->frames, "Frames to run; the first 60 are not measured")
+      ->check(CLI::Range(k_first_measured + 1, 1000000))
+      ->capture_default_str();
+  command->add_flag("--still", options->still, "The dancer stands still");
+  command->add_option("--json", options->json, "Write the figures to this file");
+  command->callback([options, &status] { status = run(*options); });
+}
+
+} // namespace tutu::app
