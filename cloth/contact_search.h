@@ -4,6 +4,7 @@
 #include "cloth/solver.h"
 #include "cloth/tolerances.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -77,9 +78,11 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
       ++counts_.contacts;
     }
     if (particle_travel_[i] <= margin_) continue;
-    // Pushed out of reach of what was looked for: ask everything, this once. The next substep searches anew.
+    // Pushed out of reach of what was looked for: ask the others too, this once. The next substep searches anew.
     const int colliders = colliders_.size() + (colliders_.ground ? 1 : 0);
+    const std::span<const int> asked = candidates_.of(i);
     for (int collider = 0; collider < colliders; ++collider) {
+      if (std::binary_search(asked.begin(), asked.end(), collider)) continue;
       const proxies::Contact contact = query.contact(particles.positions[i], collider);
       ++counts_.queries;
       if (contact.distance >= offset_) continue;

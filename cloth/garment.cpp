@@ -97,6 +97,7 @@ void add_springs(const Layout& layout, const Fabric& fabric, Garment& garment) {
   // L^2 stiff.
   const auto add = [&](SpringKind kind, int i, int j, double sheet_stiffness, double area) {
     const double length = (layout.positions[i] - layout.positions[j]).norm();
+    if (!(sheet_stiffness > 0.0)) return; // asked not to resist
     if (!(length > k_shortest_spring)) return; // a fold at rest: two apart are in one place, and nothing to hold
     garment.springs.push_back({i, j, length, sheet_stiffness * area / (length * length), kind});
   };

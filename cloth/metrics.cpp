@@ -54,8 +54,7 @@ std::vector<double> stretch_of(const Garment& garment, const Particles& particle
   std::vector<double> stretch(garment.structural_count);
   for (int k = 0; k < garment.structural_count; ++k) {
     const Spring& spring = garment.springs[k];
-    stretch[k] =
-        std::abs((particles.positions[spring.j] - particles.positions[spring.i]).norm() / spring.rest_length - 1.0);
+    stretch[k] = (particles.positions[spring.j] - particles.positions[spring.i]).norm() / spring.rest_length - 1.0;
   }
   return stretch;
 }

@@ -37,7 +37,7 @@ private:
   double sum_ = 0.0, max_ = 0.0;
 };
 
-/// |length / rest length - 1| of every structural spring.
+/// length / rest length - 1 of every structural spring: negative where it is pressed together.
 std::vector<double> stretch_of(const Garment& garment, const Particles& particles);
 
 /// Depth of every free particle below the nearest collider surface, m, >= 0, over all colliders, closed form.

@@ -103,6 +103,7 @@ void Xpbd::solve_thread(const Thread& thread, double h) {
 void Xpbd::solve_constraints(double h) {
   std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
   for (const int spring : loose_springs_) solve_spring(spring, h);
+  close_seams(*garment_, pinned_, particles_); // both sides start the threads together, so that neither is torn off
   constexpr int k_newton_steps = 2;
   for (const Thread& thread : threads_) {
     for (int k = 0; k < k_newton_steps; ++k) solve_thread(thread, h);

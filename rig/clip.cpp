@@ -1,6 +1,7 @@
 #include "rig/clip.h"
 
 #include "rig/error.h"
+#include "rig/json_file.h"
 
 #include <algorithm>
 #include <cassert>
@@ -37,15 +38,17 @@ void check(const RawClip& raw) {
   if (raw.keys.empty()) throw InputError(raw.file, "clip " + raw.name, "no keys", "at least one key");
   for (std::size_t k = 0; k < raw.keys.size(); ++k) {
     const RawClip::Key& key = raw.keys[k];
-    if (!std::isfinite(key.time)) throw InputError(raw.file, place_of(raw, k), "a non-finite time", "a finite time");
+    if (!(std::abs(key.time) <= k_largest_number))
+      throw InputError(raw.file, place_of(raw, k), "time " + shown(key.time), "a time within +-1e9 s");
     if (k > 0 && !(key.time > raw.keys[k - 1].time))
       throw InputError(raw.file, place_of(raw, k),
                        "time " + shown(key.time) + " s after " + shown(raw.keys[k - 1].time) + " s of the key before",
                        "strictly rising times");
     for (const auto& [name, joint] : key.joints) {
       const std::string place = place_of(raw, k) + ", joint " + name;
-      if (joint.translation && !is_finite(*joint.translation))
-        throw InputError(raw.file, place, "a non-finite translation", "finite numbers");
+      if (joint.translation &&
+          !(joint.translation->cwiseAbs().maxCoeff() <= k_largest_number && is_finite(*joint.translation)))
+        throw InputError(raw.file, place, "a translation beyond all bounds", "finite numbers within +-1e9 m");
       if (joint.rotation && !(std::abs(joint.rotation->norm() - 1.0) < 1e-6))
         throw InputError(raw.file, place, "a rotation of length " + shown(joint.rotation->norm()), "a unit quaternion");
     }

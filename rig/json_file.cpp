@@ -11,9 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double k_largest_number =
-    1e9; // any unit: no scene is that large, and products of a few stay far from overflow
-
 std::string shortened(const json& value) {
   constexpr std::size_t k_longest = 60;
   std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);

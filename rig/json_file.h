@@ -15,6 +15,9 @@
 
 namespace tutu {
 
+/// No number of a file may be larger, in any unit: no scene is, and products of a few stay far from overflow.
+inline constexpr double k_largest_number = 1e9;
+
 /// One value of a JSON file together with where it stands. Cheap to copy; the file's content lives as long as any of
 /// its values does. All functions throw InputError on a value of another type than asked.
 class JsonValue {

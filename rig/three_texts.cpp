@@ -2,6 +2,7 @@
 #include "rig/clip_file.h"
 #include "rig/error.h"
 #include "rig/file_io.h"
+#include "rig/json_file.h"
 
 #include <algorithm>
 #include <array>
@@ -68,7 +69,7 @@ std::vector<double> numbers(const Text& text, const Text::Line& line) {
   std::string_view rest = line.text;
   for (std::string_view word = next_word(rest); !word.empty(); word = next_word(rest)) {
     double value = 0.0;
-    if (!read_word(word, value) || !(std::abs(value) <= 1e9))
+    if (!read_word(word, value) || !(std::abs(value) <= k_largest_number))
       throw text.error(line, "\"" + std::string(word.substr(0, 40)) + "\"", "a finite number");
     values.push_back(value);
   }

@@ -160,11 +160,15 @@ void dancer_pins(const cloth::Garment& skirt, double t, DancerMotion motion, std
   for (std::size_t k = 0; k < skirt.pins.size(); ++k) out[k] = moved * skirt.rest_positions[skirt.pins[k].particle];
 }
 
-int default_mass_spring_substeps(int n) { return static_cast<int>(std::ceil(32.0 * n / 30.0)); }
+int default_substeps(cloth::SolverKind solver, int n) {
+  const double at_thirty = solver == cloth::SolverKind::xpbd ? 10.0 : 32.0;
+  return static_cast<int>(std::ceil(at_thirty * n / 30.0));
+}
 
 DancerSkirt::DancerSkirt(const DancerSkirtSetup& setup)
-    : setup_(setup), skirt_(std::make_unique<const cloth::Garment>(dancer_skirt(setup.n))), solver_(*skirt_),
-      query_(proxies::make_query(setup.backend)), pins_start_(skirt_->pins.size()), pins_end_(skirt_->pins.size()) {
+    : setup_(setup), skirt_(std::make_unique<const cloth::Garment>(dancer_skirt(setup.n))),
+      solver_(cloth::make_solver(setup.solver, *skirt_)), query_(proxies::make_query(setup.backend)),
+      pins_start_(skirt_->pins.size()), pins_end_(skirt_->pins.size()) {
   pose_dancer(0.0, setup_.motion, proxies_end_);
   dancer_pins(*skirt_, 0.0, setup_.motion, pins_end_);
 }
@@ -181,9 +185,15 @@ std::optional<cloth::Divergence> DancerSkirt::advance() {
   input.colliders = {proxies_start_, proxies_end_, std::nullopt};
   input.pins_start = pins_start_;
   input.pins_end = pins_end_;
+  static const std::array<double, k_dancer_proxies + 1> friction = [] {
+    std::array<double, k_dancer_proxies + 1> all{};
+    all.fill(k_dancer_friction);
+    return all;
+  }();
+  input.friction = friction;
   input.seconds = 1.0 / k_dancer_frames_per_second;
   input.substeps = setup_.substeps;
-  const auto divergence = solver_.step(input, *query_);
+  const auto divergence = solver_->step(input, *query_);
   cpu_ms_ = thread_cpu_ms() - before;
   if (!divergence) ++frame_;
   return divergence;

@@ -5,7 +5,7 @@
 // state from t = f/60 to t = (f + 1)/60. m, kg, s.
 #pragma once
 
-#include "cloth/mass_spring.h"
+#include "cloth/solver.h"
 #include "proxies/collision_query.h"
 
 #include <array>
@@ -41,18 +41,21 @@ cloth::Garment dancer_skirt(int n);
 /// Where the pins are at t; `out` in the order of skirt.pins.
 void dancer_pins(const cloth::Garment& skirt, double t, DancerMotion motion, std::span<Vec3> out);
 
-/// Substeps a frame at which mass_spring stands this skirt; grows with n, as the time a wave needs from one particle to
-/// the next shrinks.
-int default_mass_spring_substeps(int n);
+inline constexpr double k_dancer_friction = 0.3; ///< cloth against every proxy; mass_spring knows none
+
+/// Substeps a frame that suit a solver: what mass_spring needs to stand this skirt, and a third of that for xpbd. They
+/// grow with n, as the time a wave needs from one particle to the next shrinks.
+int default_substeps(cloth::SolverKind solver, int n);
 
 struct DancerSkirtSetup {
   int n = 30;
-  int substeps = default_mass_spring_substeps(30);
+  cloth::SolverKind solver = cloth::SolverKind::xpbd;
+  int substeps = default_substeps(cloth::SolverKind::xpbd, 30);
   proxies::Backend backend = proxies::Backend::fcl;
   DancerMotion motion = DancerMotion::dance;
 };
 
-/// The scene in motion, solved by mass_spring.
+/// The scene in motion.
 class DancerSkirt {
 public:
   explicit DancerSkirt(const DancerSkirtSetup& setup);
@@ -66,13 +69,13 @@ public:
   /// CPU time that this thread spent on the last frame's posing and step, ms.
   double cpu_ms() const { return cpu_ms_; }
   const cloth::Garment& skirt() const { return *skirt_; }
-  const cloth::Particles& particles() const { return solver_.particles(); }
+  const cloth::Particles& particles() const { return solver_->particles(); }
   std::span<const proxies::Capsule> proxies() const { return proxies_end_; } ///< at time()
 
 private:
   DancerSkirtSetup setup_;
   std::unique_ptr<const cloth::Garment> skirt_; // the solver keeps its address
-  cloth::MassSpring solver_;
+  std::unique_ptr<cloth::Solver> solver_;
   std::unique_ptr<proxies::CollisionQuery> query_;
   std::array<proxies::Capsule, k_dancer_proxies> proxies_start_, proxies_end_;
   std::vector<Vec3> pins_start_, pins_end_;

@@ -19,7 +19,7 @@ constexpr const char* k_dancer_skirt = "dancer-skirt";
 constexpr int k_first_measured = 60;
 
 struct Options {
-  std::string name = k_dancer_skirt, solver = "mass_spring", backend = "fcl", json;
+  std::string name = k_dancer_skirt, solver = "xpbd", backend = "fcl", json;
   int n = 30, frames = k_dancer_frames;
   std::optional<int> substeps;
   bool still = false;
@@ -72,7 +72,7 @@ json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics&
                  {"backend", options.backend},
                  {"still", options.still},
                  {"offset_mm", 1000.0 * scene.skirt().fabric.contact_offset()},
-                 {"friction", 0.0}, // mass_spring knows none
+                 {"friction", scene.setup().solver == cloth::SolverKind::xpbd ? k_dancer_friction : 0.0},
                  {"threads", 1},
                  {"frames", scene.frame()},
                  {"measured_frames", m.frames},
@@ -131,7 +131,8 @@ int run(const Options& options) {
   catch_interrupt();
   DancerSkirtSetup setup;
   setup.n = options.n;
-  setup.substeps = options.substeps.value_or(default_mass_spring_substeps(options.n));
+  setup.solver = options.solver == "xpbd" ? cloth::SolverKind::xpbd : cloth::SolverKind::mass_spring;
+  setup.substeps = options.substeps.value_or(default_substeps(setup.solver, options.n));
   setup.backend = options.backend == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
   setup.motion = options.still ? DancerMotion::still : DancerMotion::dance;
   DancerSkirt scene(setup);
@@ -154,7 +155,7 @@ void add_bench(CLI::App& app, int& status) {
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
   command->add_option("--solver", options->solver, "What moves the cloth")
-      ->check(CLI::IsMember({"mass_spring"}))
+      ->check(CLI::IsMember({"mass_spring", "xpbd"}))
       ->capture_default_str();
   command->add_option("--substeps", options->substeps, "Substeps a frame; as many as the solver needs when left out")
       ->check(CLI::Range(1, 10000));

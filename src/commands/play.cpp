@@ -153,10 +153,10 @@ private:
 int play_headless(const Options& options, const Scene& scene, const std::vector<std::vector<Vec3>>& start) {
   Session session(scene);
   session.start(start);
-  const int whole =
-      std::max(1, static_cast<int>(std::lround(scene.clip.duration() * scene.description.frames_per_second)));
-  int frames = options.frames.value_or(whole);
-  if (!options.frames && !options.at.empty()) frames = *std::max_element(options.at.begin(), options.at.end());
+  int frames = 0;
+  if (options.frames) frames = *options.frames;
+  else if (options.at.empty()) frames = frames_of(scene);
+  else frames = *std::max_element(options.at.begin(), options.at.end());
 
   Pictures pictures(options, scene);
   RunStats stats(scene);

@@ -27,6 +27,8 @@ public:
   std::string text(const Session& session) const;
 
 private:
+  /// Largest and 99th percentile of the lengthening, mean of the change either way.
+  cloth::Spread stretch() const;
   struct Stage {
     const char* name;
     std::vector<double> ms; ///< a frame each
@@ -38,8 +40,9 @@ private:
   const Scene* scene_;
   std::vector<Stage> stages_ = {{"pose", {}},    {"proxies", {}}, {"broad", {}}, {"cloth", {}},
                                 {"contact", {}}, {"skin", {}},    {"total", {}}};
-  cloth::SpreadGatherer depths_mm_, stretches_, jitters_;
-  std::int64_t inside_ = 0; ///< samples deeper than k_inside_depth
+  cloth::SpreadGatherer depths_mm_, jitters_;
+  cloth::SpreadGatherer stretches_, strains_; ///< of threads that are longer than at rest; of all, either way
+  std::int64_t inside_ = 0;                   ///< samples deeper than k_inside_depth
   std::vector<History> history_;
   int frames_ = 0;
 };

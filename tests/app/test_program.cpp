@@ -142,7 +142,7 @@ TEST_F(Program, DivergenceIsStatus1WithItsPlaceAndLeavesNoFilm_slow) {
       R"({"name": "stiff", "shape": {"tube": {"rows": 12, "columns": 16, "rings": [{"height": 1.05, "radius": 0.2}, {"height": 0.6, "radius": 0.3}]}},
     "fabric": {"stretch": 20000}, "attachments": [{"joint": "Hips", "rows": 0}]})");
   const Outcome outcome =
-      run_program({"play", scene(", \"garments\": [\"stiff.json\"], \"solver\": {\"substeps\": 5}"), "--headless", "-o",
+      run_program({"play", scene(", \"garments\": [\"stiff.json\"], \"solver\": {\"name\": \"mass_spring\", \"substeps\": 5}"), "--headless", "-o",
                    (folder_ / "film.mp4").string(), "--json", (folder_ / "stats.json").string()});
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.output,

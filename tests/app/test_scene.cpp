@@ -139,6 +139,7 @@ TEST(Drape, FingerprintSeesWhatMatters) {
 
 TEST(SceneFile, ReadsEveryFormOfMotion) {
   const auto folder = scratch_folder();
+  for (const char* name : {"a.dae", "b.dae", "m.json", "t", "r", "k"}) write_file(folder / name, "");
   const auto read = [&](const std::string& motion) {
     write_file(folder / "s.json",
                R"({"character": {"file": "a.dae", "max_influences": 8}, "ground": false, "motion": )" + motion + "}");

@@ -32,6 +32,26 @@ TEST(Metrics, SpreadOfKnownSamples) {
   EXPECT_EQ(s.p99, 3.0);
 }
 
+TEST(Metrics, AGatheredSpreadIsTheSpreadOfTheSamples) {
+  std::mt19937_64 random(6);
+  std::lognormal_distribution<double> skewed(-3.0, 2.0);
+  std::vector<double> samples(20000);
+  SpreadGatherer gatherer;
+  for (double& s : samples) {
+    s = random() % 4 == 0 ? 0.0 : skewed(random);
+    gatherer.add(s);
+  }
+  const Spread exact = spread(samples), gathered = gatherer.spread();
+  EXPECT_EQ(gathered.max, exact.max);
+  EXPECT_NEAR(gathered.mean, exact.mean, 1e-12 * exact.mean * 20000);
+  EXPECT_GE(gathered.p99, exact.p99);
+  EXPECT_LE(gathered.p99, 1.011 * exact.p99);
+  EXPECT_EQ(SpreadGatherer().spread().max, 0.0);
+  SpreadGatherer zeros;
+  zeros.add(0.0);
+  EXPECT_EQ(zeros.spread().p99, 0.0);
+}
+
 TEST(Metrics, PenetrationIsTheDeepestOverAllColliders) {
   Garment garment;
   garment.rest_positions.resize(3);
@@ -60,6 +80,10 @@ TEST(StateHash, SeesEveryBitAndTheOrder) {
   Particles other = particles;
   other.positions[0].x() = std::nextafter(1.0, 2.0);
   EXPECT_NE(state_hash(other), hash);
+  other = particles;
+  other.positions[0].x() = -1.0;
+  other.positions[1].x() = -4.0;
+  EXPECT_NE(state_hash(other), hash) << "two signs do not cancel";
   std::swap(particles.positions[0], particles.positions[1]);
   EXPECT_NE(state_hash(particles), hash);
 }
