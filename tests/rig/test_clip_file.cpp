@@ -46,7 +46,7 @@ void expect_same_joints(const RawClip& a, const RawClip& b) {
   }
 }
 
-/// Doubles of every size, for what has no unit to be recognised.
+/// Doubles of every size a file may hold, for what has no unit to be recognised.
 double any_double(std::mt19937_64& random) {
   for (;;)
     if (const double value = std::bit_cast<double>(random()); std::abs(value) <= k_largest_number) return value;
@@ -103,7 +103,7 @@ TEST(ClipFile, RoundTripKeepsEveryBit) {
     clip.keys[2].joints.clear();
     for (auto& [name, joint] : clip.keys[0].joints)
       joint.translation = Vec3(any_double(random), any_double(random), any_double(random));
-    clip.keys[0].joints["J0"].translation = Vec3(-0.0, 5e-324, 1.7976931348623157e308);
+    clip.keys[0].joints["J0"].translation = Vec3(-0.0, 5e-324, -k_largest_number);
     clip.keys[0].joints["J1"].translation.reset();
     clip.keys[0].joints["J2"].rotation.reset();
     clip.keys[0].joints["J3"] = {};
