@@ -11,6 +11,9 @@ namespace {
 std::atomic<long> allocations{0};
 }
 
+// GCC 12 pairs the replaced operators wrongly when it inlines one of them.
+#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
+
 void* operator new(std::size_t size) {
   ++allocations;
   if (void* memory = std::malloc(size ? size : 1)) return memory;
