@@ -19,6 +19,7 @@ Xpbd::Xpbd(const Garment& garment)
     thread.springs.resize(garment.rows - 1);
     threads_.push_back(thread);
   }
+  for (const Spring& spring : garment.springs) compliances_.push_back(1.0 / spring.stiffness);
   std::vector<int> weft;
   for (int k = 0; k < static_cast<int>(garment.springs.size()); ++k) {
     const Spring& spring = garment.springs[k];
@@ -50,21 +51,22 @@ void Xpbd::predict(const FrameInput& input, double s, double h) {
   follow_pins(*garment_, input, s, h, particles_);
 }
 
-void Xpbd::solve_spring(int spring, double h) {
+void Xpbd::solve_spring(int spring, double per_h2) {
   const Spring& s = garment_->springs[spring];
   const double wi = inverse_masses_[s.i], wj = inverse_masses_[s.j];
   const Vec3 d = particles_.positions[s.j] - particles_.positions[s.i];
   const double length = d.norm();
   if (wi + wj == 0.0 || !(length > 0.0)) return;
-  const double compliance = 1.0 / (s.stiffness * h * h);
+  const double compliance = compliances_[spring] * per_h2;
   double& lambda = multipliers_[spring];
   const double step = (s.rest_length - length - compliance * lambda) / (wi + wj + compliance);
   lambda += step;
-  particles_.positions[s.i] -= (wi * step / length) * d;
-  particles_.positions[s.j] += (wj * step / length) * d;
+  const Vec3 pull = (step / length) * d;
+  particles_.positions[s.i] -= wi * pull;
+  particles_.positions[s.j] += wj * pull;
 }
 
-void Xpbd::solve_thread(const Thread& thread, double h) {
+void Xpbd::solve_thread(const Thread& thread, double per_h2) {
   // One Newton step of (J M^-1 J^T + a/h^2) dlambda = -C - a/h^2 lambda over the thread: tridiagonal, since an edge
   // shares a particle with the next one only. Forward elimination, then back substitution and the particles' moves.
   const int edges = static_cast<int>(thread.springs.size());
@@ -74,8 +76,8 @@ void Xpbd::solve_thread(const Thread& thread, double h) {
     const Vec3 d = particles_.positions[spring.j] - particles_.positions[spring.i];
     const double length = d.norm();
     Row& row = rows_[k];
-    row.direction = length > 0.0 ? Vec3(d / length) : Vec3(Vec3::Zero());
-    const double compliance = 1.0 / (spring.stiffness * h * h);
+    row.direction = length > 0.0 ? Vec3((1.0 / length) * d) : Vec3(Vec3::Zero());
+    const double compliance = compliances_[thread.springs[k]] * per_h2;
     const double residual = spring.rest_length - length - compliance * multipliers_[thread.springs[k]];
     const double diagonal = w_above + w_below + compliance;
     if (k == 0) {
@@ -101,13 +103,14 @@ void Xpbd::solve_thread(const Thread& thread, double h) {
 }
 
 void Xpbd::solve_constraints(double h) {
+  const double per_h2 = 1.0 / (h * h);
   std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
-  for (const int spring : loose_springs_) solve_spring(spring, h);
+  for (const int spring : loose_springs_) solve_spring(spring, per_h2);
   close_seams(*garment_, pinned_, particles_); // both sides start the threads together, so that neither is torn off
   constexpr int k_newton_steps = 2;
   for (const Thread& thread : threads_) {
-    for (int k = 0; k < k_newton_steps; ++k) solve_thread(thread, h);
-    for (const int spring : thread.springs) solve_spring(spring, h);
+    for (int k = 0; k < k_newton_steps; ++k) solve_thread(thread, per_h2);
+    for (const int spring : thread.springs) solve_spring(spring, per_h2);
   }
 }
 
@@ -146,7 +149,7 @@ std::optional<Divergence> Xpbd::step(const FrameInput& input, proxies::Collision
     time = lap(time, times_.contact);
     for (int i = 0; i < particles_.count(); ++i)
       if (!pinned_[i]) particles_.velocities[i] = (particles_.positions[i] - before_[i]) / h;
-    const auto divergence = check(substep);
+    auto divergence = check(substep);
     time = lap(time, times_.cloth);
     if (divergence) return divergence;
   }

@@ -38,8 +38,8 @@ private:
   };
 
   void predict(const FrameInput& input, double s, double h);
-  void solve_spring(int spring, double h);
-  void solve_thread(const Thread& thread, double h);
+  void solve_spring(int spring, double per_h2); ///< 1/s2
+  void solve_thread(const Thread& thread, double per_h2);
   void solve_constraints(double h);
   std::optional<Divergence> check(int substep);
 
@@ -50,10 +50,11 @@ private:
   std::vector<std::uint8_t> pinned_;
   std::vector<Thread> threads_;
   std::vector<int> loose_springs_;  ///< all that are in no thread: shear, bend, weft
+  std::vector<double> compliances_; ///< one a spring, m/N
   std::vector<double> multipliers_; ///< one a spring, N s2; 0 at the start of a substep
   struct Row {
-    Vec3 direction; ///< of the edge
-    double m, d;    ///< of the elimination
+    Vec3 direction = Vec3::Zero(); ///< of the edge
+    double m = 0.0, d = 0.0;       ///< of the elimination
   };
   std::vector<Row> rows_; ///< working memory of solve_thread
   ContactSearch contacts_;

@@ -2,7 +2,7 @@
 add_library(tutu_warnings INTERFACE)
 target_compile_options(tutu_warnings INTERFACE
   # GCC 12 sees overlaps in std::string + that are not there (PR 105651): -Wno-restrict.
-  -Wall -Wextra -Wpedantic -Wno-restrict -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict> -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   $<$<BOOL:${TUTU_WERROR}>:-Werror>)
 
 # Bits are a promise (state_hash), so contraction is a decision: off. Fused multiply-adds appear only
