@@ -5,6 +5,7 @@
 #include <algorithm>
 
 namespace tutu::cloth {
+
 MassSpring::MassSpring(const Garment& garment)
     : garment_(&garment), pinned_(pinned_flags(garment)), contacts_(garment.fabric.contact_offset()) {
   reset(garment.rest_positions);

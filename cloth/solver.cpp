@@ -4,6 +4,10 @@
 #include "cloth/tolerances.h"
 #include "cloth/xpbd.h"
 
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
 namespace tutu::cloth {
 
 std::optional<int> add_spring_forces(const Garment& garment, std::span<const Vec3> positions, std::span<Vec3> forces) {
@@ -33,7 +37,13 @@ double elastic_energy(const Garment& garment, std::span<const Vec3> positions) {
   return energy;
 }
 
-std::string_view name_of(SolverKind kind) { return kind == SolverKind::xpbd ? "xpbd" : "mass_spring"; }
+std::string_view name_of(SolverKind kind) { return k_solver_names[static_cast<std::size_t>(kind)]; }
+
+SolverKind solver_named(std::string_view name) {
+  const auto found = std::find(k_solver_names.begin(), k_solver_names.end(), name);
+  if (found == k_solver_names.end()) throw std::invalid_argument("no solver called " + std::string(name));
+  return static_cast<SolverKind>(found - k_solver_names.begin());
+}
 
 std::unique_ptr<Solver> make_solver(SolverKind kind, const Garment& garment) {
   if (kind == SolverKind::mass_spring) return std::make_unique<MassSpring>(garment);

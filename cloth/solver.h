@@ -5,6 +5,7 @@
 #include "cloth/particles.h"
 #include "proxies/collision_query.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -75,8 +76,10 @@ enum class SolverKind {
   xpbd         ///< extended position-based dynamics in small steps, threads solved as wholes
 };
 
-/// As in scene files and on the command line: "mass_spring", "xpbd".
+/// As in scene files and on the command line, in the order of SolverKind.
+inline constexpr std::array<std::string_view, 2> k_solver_names = {"mass_spring", "xpbd"};
 std::string_view name_of(SolverKind kind);
+SolverKind solver_named(std::string_view name); ///< one of k_solver_names; std::invalid_argument for any other
 std::unique_ptr<Solver> make_solver(SolverKind kind, const Garment& garment);
 
 } // namespace tutu::cloth

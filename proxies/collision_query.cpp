@@ -123,6 +123,12 @@ private:
 
 } // namespace
 
+Backend backend_named(std::string_view name) {
+  const auto found = std::find(k_backend_names.begin(), k_backend_names.end(), name);
+  if (found == k_backend_names.end()) throw std::invalid_argument("no backend called " + std::string(name));
+  return static_cast<Backend>(found - k_backend_names.begin());
+}
+
 std::unique_ptr<CollisionQuery> make_query(Backend backend) {
   if (backend == Backend::brute) return std::make_unique<BruteQuery>();
   return std::make_unique<FclQuery>();

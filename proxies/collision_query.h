@@ -8,6 +8,7 @@
 #include "proxies/collider_set.h"
 #include "proxies/contact.h"
 
+#include <array>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -49,6 +50,10 @@ enum class Backend {
   fcl,  ///< FCL tree, per particle; FCL distance asked in the one sound way
   brute ///< every pair, closed form in double: the twin that tests compare with
 };
+
+/// As in scene files and on the command line, in the order of Backend.
+inline constexpr std::array<std::string_view, 2> k_backend_names = {"fcl", "brute"};
+Backend backend_named(std::string_view name); ///< one of k_backend_names; std::invalid_argument for any other
 
 std::unique_ptr<CollisionQuery> make_query(Backend backend);
 

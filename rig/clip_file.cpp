@@ -4,6 +4,8 @@
 #include "rig/file_io.h"
 #include "rig/json_file.h"
 
+#include <array>
+
 namespace tutu::rig {
 namespace {
 
@@ -67,8 +69,9 @@ RawClip read_clip(const std::filesystem::path& file) {
   const auto name = root.find("name");
   clip.name = name ? name->string() : file.stem().string();
   if (const auto extrapolation = root.find("extrapolation"))
-    clip.extrapolation =
-        extrapolation->string_among({"loop", "clamp"}) == "clamp" ? Extrapolation::clamp : Extrapolation::loop;
+    clip.extrapolation = extrapolation->string_among(std::array<std::string_view, 2>{"loop", "clamp"}) == "clamp"
+                             ? Extrapolation::clamp
+                             : Extrapolation::loop;
 
   const JsonValue keys = root.at("keys");
   for (const JsonValue& value : keys.items()) {

@@ -18,7 +18,7 @@ std::string shortened(const json& value) {
   return text;
 }
 
-std::string listed(std::initializer_list<std::string_view> names) {
+std::string listed(std::span<const std::string_view> names) {
   std::string text;
   for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
   return text;
@@ -130,7 +130,7 @@ void JsonValue::only_keys(std::initializer_list<std::string_view> known) const {
   for (const auto& [key, value] : node_->items()) {
     if (key == "$schema" || key == "comment") continue;
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw child(key, value).error("unknown key \"" + key + "\"", "one of: " + listed(known));
+      throw child(key, value).error("unknown key \"" + key + "\"", "one of: " + listed({known.begin(), known.size()}));
   }
 }
 
@@ -139,7 +139,7 @@ std::string JsonValue::string() const {
   return node_->get<std::string>();
 }
 
-std::string JsonValue::string_among(std::initializer_list<std::string_view> choices) const {
+std::string JsonValue::string_among(std::span<const std::string_view> choices) const {
   std::string value = string();
   if (std::find(choices.begin(), choices.end(), value) == choices.end()) throw error("one of: " + listed(choices));
   return value;

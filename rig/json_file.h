@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -42,7 +43,7 @@ public:
   void only_keys(std::initializer_list<std::string_view> known) const;
 
   std::string string() const;
-  std::string string_among(std::initializer_list<std::string_view> choices) const;
+  std::string string_among(std::span<const std::string_view> choices) const;
   bool boolean() const;
   double number() const; ///< finite, within +-1e9
   double number_in(double lowest, double highest) const;

@@ -2,6 +2,7 @@
 #include "src/bench/bench_metrics.h"
 #include "src/bench/dancer_skirt.h"
 #include "src/commands/commands.h"
+#include "src/commands/scene_options.h"
 #include "src/interrupt.h"
 #include "src/progress.h"
 #include "src/scene/session.h"
@@ -131,9 +132,9 @@ int run(const Options& options) {
   catch_interrupt();
   DancerSkirtSetup setup;
   setup.n = options.n;
-  setup.solver = options.solver == "xpbd" ? cloth::SolverKind::xpbd : cloth::SolverKind::mass_spring;
+  setup.solver = cloth::solver_named(options.solver);
   setup.substeps = options.substeps.value_or(default_substeps(setup.solver, options.n));
-  setup.backend = options.backend == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
+  setup.backend = proxies::backend_named(options.backend);
   setup.motion = options.still ? DancerMotion::still : DancerMotion::dance;
   DancerSkirt scene(setup);
   const Run done = run_scene(scene, options.frames);
@@ -155,12 +156,12 @@ void add_bench(CLI::App& app, int& status) {
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
   command->add_option("--solver", options->solver, "What moves the cloth")
-      ->check(CLI::IsMember({"mass_spring", "xpbd"}))
+      ->check(one_of(cloth::k_solver_names))
       ->capture_default_str();
   command->add_option("--substeps", options->substeps, "Substeps a frame; as many as the solver needs when left out")
       ->check(CLI::Range(1, 10000));
   command->add_option("--backend", options->backend, "How particles ask colliders")
-      ->check(CLI::IsMember({"fcl", "brute"}))
+      ->check(one_of(proxies::k_backend_names))
       ->capture_default_str();
   command->add_option("--frames", options->frames, "Frames to run; the first 60 are not measured")
       ->check(CLI::Range(k_first_measured + 1, 1000000))

@@ -18,13 +18,17 @@ CLI::Validator finite_number() {
           "FINITE"};
 }
 
+CLI::Validator one_of(std::span<const std::string_view> names) {
+  return CLI::IsMember(std::vector<std::string>(names.begin(), names.end()));
+}
+
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("scene", scene, "Scene file (.json); the shipped dance when left out");
   command.add_option("--substeps", substeps, "Substeps a frame, in place of the scene's")->check(CLI::Range(1, 10000));
   command.add_option("--solver", solver, "How cloth is solved, in place of the scene's")
-      ->check(CLI::IsMember({"mass_spring", "xpbd"}));
+      ->check(one_of(cloth::k_solver_names));
   command.add_option("--backend", backend, "How particles ask colliders, in place of the scene's")
-      ->check(CLI::IsMember({"fcl", "brute"}));
+      ->check(one_of(proxies::k_backend_names));
 }
 
 Scene SceneOptions::load() const {
@@ -32,8 +36,8 @@ Scene SceneOptions::load() const {
       scene.empty() ? assets_folder() / "scenes" / "dance.json" : std::filesystem::path(scene);
   SceneDescription description = read_scene(file);
   if (substeps) description.substeps = *substeps;
-  if (solver) description.solver = *solver == "xpbd" ? cloth::SolverKind::xpbd : cloth::SolverKind::mass_spring;
-  if (backend) description.backend = *backend == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
+  if (solver) description.solver = cloth::solver_named(*solver);
+  if (backend) description.backend = proxies::backend_named(*backend);
   Scene loaded = load_scene(description);
   for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
   return loaded;

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace tutu::app {
 
 /// For options with a real value: CLI11 reads "nan" and lets it through every range.
 CLI::Validator finite_number();
+
+/// One of these names.
+CLI::Validator one_of(std::span<const std::string_view> names);
 
 /// Options that change a scene's own settings.
 struct SceneOptions {

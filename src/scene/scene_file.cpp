@@ -95,16 +95,14 @@ SceneDescription read_scene(const fs::path& file) {
   if (const auto solver = json.find("solver")) {
     solver->only_keys({"name", "substeps", "frames_per_second"});
     if (const auto name = solver->find("name"))
-      scene.solver = name->string_among({"mass_spring", "xpbd"}) == "xpbd" ? cloth::SolverKind::xpbd
-                                                                           : cloth::SolverKind::mass_spring;
+      scene.solver = cloth::solver_named(name->string_among(cloth::k_solver_names));
     if (const auto substeps = solver->find("substeps")) scene.substeps = substeps->integer_in(1, 10000);
     if (const auto rate = solver->find("frames_per_second")) scene.frames_per_second = rate->integer_in(1, 10000);
   }
   if (const auto collision = json.find("collision")) {
     collision->only_keys({"backend"});
     if (const auto backend = collision->find("backend"))
-      scene.backend =
-          backend->string_among({"fcl", "brute"}) == "fcl" ? proxies::Backend::fcl : proxies::Backend::brute;
+      scene.backend = proxies::backend_named(backend->string_among(proxies::k_backend_names));
   }
   if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);
   else scene.drape = fs::path(file).replace_extension(".drape.json");
