@@ -12,6 +12,7 @@ void ContactSearch::begin_frame(proxies::CollisionQuery& query, const proxies::S
   for (const Vec3& v : particles.velocities) fastest = std::max(fastest, v.squaredNorm());
   margin_ = k_least_margin + k_margin_growth * std::sqrt(fastest) * seconds;
   placed_.assign(colliders.start.begin(), colliders.start.end());
+  placed_at_ = 0.0;
   find_candidates(query, particles);
 }
 
@@ -27,6 +28,8 @@ void ContactSearch::find_candidates(proxies::CollisionQuery& query, const Partic
 
 void ContactSearch::place(proxies::CollisionQuery& query, double s) {
   placed_before_.swap(placed_);
+  since_before_ = s - placed_at_;
+  placed_at_ = s;
   placed_.resize(placed_before_.size());
   proxies::colliders_at(colliders_, s, placed_);
   query.place(placed_, colliders_.ground);
@@ -51,11 +54,8 @@ void ContactSearch::account_travel(proxies::CollisionQuery& query, std::span<con
 
 Vec3 ContactSearch::surface_motion(int collider, const Vec3& point) const {
   if (collider >= colliders_.size()) return Vec3::Zero(); // the ground
-  const proxies::Capsule &now = placed_[collider], &before = placed_before_[collider];
-  const Vec3 axis = now.b - now.a;
-  const double length_squared = axis.squaredNorm();
-  const double t = length_squared > 0.0 ? std::clamp((point - now.a).dot(axis) / length_squared, 0.0, 1.0) : 0.0;
-  return (1.0 - t) * (now.a - before.a) + t * (now.b - before.b);
+  const Vec3 spin = colliders_.spin.empty() ? Vec3(Vec3::Zero()) : Vec3(since_before_ * colliders_.spin[collider]);
+  return proxies::surface_motion(placed_before_[collider], placed_[collider], spin, point);
 }
 
 } // namespace tutu::cloth

@@ -45,7 +45,8 @@ private:
   void account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned, const Particles& particles);
 
   double offset_ = 0.0;
-  double margin_ = 0.0; ///< m a particle may go before candidates are found anew
+  double margin_ = 0.0;                         ///< m a particle may go before candidates are found anew
+  double placed_at_ = 0.0, since_before_ = 0.0; ///< of the frame: where placed_ is, and how far from placed_before_
   proxies::SweptColliders colliders_;
   std::vector<proxies::Capsule> placed_, placed_before_;
   proxies::Candidates candidates_;

@@ -1,5 +1,6 @@
 #include "cloth/garment.h"
 
+#include "cloth/garment_mesh.h"
 #include "rig/error.h"
 
 #include <algorithm>
@@ -97,7 +98,7 @@ void add_springs(const Layout& layout, const Fabric& fabric, Garment& garment) {
   // L^2 stiff.
   const auto add = [&](SpringKind kind, int i, int j, double sheet_stiffness, double area) {
     const double length = (layout.positions[i] - layout.positions[j]).norm();
-    if (!(sheet_stiffness > 0.0)) return; // asked not to resist
+    if (!(sheet_stiffness > 0.0)) return;      // asked not to resist
     if (!(length > k_shortest_spring)) return; // a fold at rest: two apart are in one place, and nothing to hold
     garment.springs.push_back({i, j, length, sheet_stiffness * area / (length * length), kind});
   };
@@ -127,11 +128,11 @@ void add_springs(const Layout& layout, const Fabric& fabric, Garment& garment) {
   for (int row = 0; row < rows; ++row)
     for (int column = 0; column < columns; ++column) {
       if (reaches(column + 2) && (!layout.woven_shut || columns > 4)) // of four around, two apart is two apart twice
-        add(SpringKind::bend, layout.at(row, column), layout.at(row, column + 2), fabric.bend,
+        add(SpringKind::bend, layout.at(row, column), layout.at(row, column + 2), fabric.bend_springs,
             0.5 * (cell_area(layout, row, column) + cell_area(layout, row, column + 1) +
                    cell_area(layout, row - 1, column) + cell_area(layout, row - 1, column + 1)));
       if (row + 2 < rows)
-        add(SpringKind::bend, layout.at(row, column), layout.at(row + 2, column), fabric.bend,
+        add(SpringKind::bend, layout.at(row, column), layout.at(row + 2, column), fabric.bend_springs,
             0.5 * (cell_area(layout, row, column) + cell_area(layout, row + 1, column) +
                    cell_area(layout, row, column - 1) + cell_area(layout, row + 1, column - 1)));
     }
@@ -139,51 +140,72 @@ void add_springs(const Layout& layout, const Fabric& fabric, Garment& garment) {
 
 int resolved(int index, int count) { return index < 0 ? count + index : index; }
 
+/// Resolves the rows and columns of `attachment`; the particles in them.
+std::vector<int> particles_in_rows(const Garment& garment, const std::string& file, const std::string& place,
+                                   Attachment& attachment) {
+  if (garment.rows == 0)
+    throw InputError(file, place, "rows of a garment that has none", "within or above to tell what is held");
+  const auto resolve = [&](int& first, int& last, int count, const char* what) {
+    const std::string found = std::string(what) + " " + std::to_string(first) + " to " + std::to_string(last);
+    first = resolved(first, count);
+    last = resolved(last, count);
+    if (first < 0 || last >= count || first > last)
+      throw InputError(file, place, found,
+                       "a range within 0.." + std::to_string(count - 1) + " (or counted from the end, -1 the last)");
+  };
+  resolve(attachment.first_row, attachment.last_row, garment.rows, "rows");
+  resolve(attachment.first_column, attachment.last_column, garment.columns, "columns");
+  std::vector<int> particles;
+  for (int row = attachment.first_row; row <= attachment.last_row; ++row)
+    for (int column = attachment.first_column; column <= attachment.last_column; ++column)
+      particles.push_back(row * garment.columns + column);
+  return particles;
+}
+
+std::vector<int> particles_in_place(const Garment& garment, const std::string& file, const std::string& place,
+                                    const Attachment& attachment) {
+  std::vector<int> particles;
+  for (int i = 0; i < garment.particle_count(); ++i) {
+    const Vec3& p = garment.rest_positions[i];
+    if (attachment.within && (p - attachment.within->centre).norm() > attachment.within->radius) continue;
+    if (attachment.above && p.y() < *attachment.above) continue;
+    particles.push_back(i);
+  }
+  if (particles.empty()) throw InputError(file, place, "no particle in that place", "at least one");
+  return particles;
+}
+
 void add_pins(const GarmentDescription& description, Garment& garment) {
   std::vector<int> owner(garment.rest_positions.size(), -1);
   for (std::size_t a = 0; a < description.attachments.size(); ++a) {
     Attachment attachment = description.attachments[a];
     const std::string place = "/attachments/" + std::to_string(a);
-    const auto resolve = [&](int& first, int& last, int count, const char* what) {
-      const std::string found = std::string(what) + " " + std::to_string(first) + " to " + std::to_string(last);
-      first = resolved(first, count);
-      last = resolved(last, count);
-      if (first < 0 || last >= count || first > last)
-        throw InputError(description.file, place, found,
-                         "a range within 0.." + std::to_string(count - 1) + " (or counted from the end, -1 the last)");
-    };
-    resolve(attachment.first_row, attachment.last_row, garment.rows, "rows");
-    resolve(attachment.first_column, attachment.last_column, garment.columns, "columns");
-    for (int row = attachment.first_row; row <= attachment.last_row; ++row)
-      for (int column = attachment.first_column; column <= attachment.last_column; ++column) {
-        const int particle = row * garment.columns + column;
-        if (owner[particle] >= 0)
-          throw InputError(description.file, place,
-                           "row " + std::to_string(row) + ", column " + std::to_string(column) +
-                               " held by attachment " + std::to_string(owner[particle]) + " too",
-                           "each particle held once");
-        owner[particle] = static_cast<int>(a);
-        garment.pins.push_back({particle, static_cast<int>(a)});
+    const std::vector<int> held = attachment.by_place()
+                                      ? particles_in_place(garment, description.file, place, attachment)
+                                      : particles_in_rows(garment, description.file, place, attachment);
+    for (const int particle : held) {
+      if (owner[particle] >= 0) {
+        const std::string which = garment.rows == 0 ? "particle " + std::to_string(particle)
+                                                    : "row " + std::to_string(particle / garment.columns) +
+                                                          ", column " + std::to_string(particle % garment.columns);
+        throw InputError(description.file, place,
+                         which + " held by attachment " + std::to_string(owner[particle]) + " too",
+                         "each particle held once");
       }
+      owner[particle] = static_cast<int>(a);
+      garment.pins.push_back({particle, static_cast<int>(a)});
+    }
     garment.attachments.push_back(attachment);
   }
 }
 
-} // namespace
-
-Garment build_garment(const GarmentDescription& description) {
-  const Layout layout = std::visit([&](const auto& shape) { return lay_out(description, shape); }, description.shape);
-
-  Garment garment;
-  garment.name = description.name;
+/// Fills positions, masses, springs and triangles of what is woven in rows and columns.
+void weave(const Layout& layout, const GarmentDescription& description, Garment& garment) {
   garment.rows = layout.rows;
   garment.columns = layout.columns;
   garment.woven_shut = layout.woven_shut;
   garment.rest_positions = layout.positions;
-  garment.fabric = description.fabric;
-  garment.colour = description.colour;
   garment.masses.assign(layout.positions.size(), 0.0);
-
   for (int row = 0; row + 1 < layout.rows; ++row)
     for (int column = 0; column < layout.cell_columns(); ++column) {
       const int a = layout.at(row, column), b = layout.at(row, column + 1);
@@ -200,13 +222,35 @@ Garment build_garment(const GarmentDescription& description) {
       }
     }
   add_springs(layout, description.fabric, garment);
-  add_pins(description, garment);
+}
 
-  if (const auto* tube = std::get_if<TubeShape>(&description.shape); tube && tube->seam) {
-    const int sewn_rows = static_cast<int>(std::lround(*tube->seam * layout.rows));
-    for (int row = 0; row < sewn_rows; ++row)
-      garment.seams.push_back({layout.at(row, 0), layout.at(row, layout.columns - 1)});
-  }
+void build_shape(const GridShape& grid, const GarmentDescription& description, Garment& garment) {
+  weave(lay_out(description, grid), description, garment);
+}
+void build_shape(const TubeShape& tube, const GarmentDescription& description, Garment& garment) {
+  const Layout layout = lay_out(description, tube);
+  weave(layout, description, garment);
+  garment.pressed = tube.pressed;
+  const int sewn_rows = tube.seam ? static_cast<int>(std::lround(*tube.seam * layout.rows)) : 0;
+  for (int row = 0; row < sewn_rows; ++row)
+    garment.seams.push_back({layout.at(row, 0), layout.at(row, layout.columns - 1)});
+}
+void build_shape(const DiscShape& disc, const GarmentDescription& description, Garment& garment) {
+  build_from_triangles(triangulated(disc, description), description, garment);
+}
+void build_shape(const MeshShape& mesh, const GarmentDescription& description, Garment& garment) {
+  build_from_triangles(mesh, description, garment);
+}
+
+} // namespace
+
+Garment build_garment(const GarmentDescription& description) {
+  Garment garment;
+  garment.name = description.name;
+  garment.fabric = description.fabric;
+  garment.colour = description.colour;
+  std::visit([&](const auto& shape) { build_shape(shape, description, garment); }, description.shape);
+  add_pins(description, garment);
   return garment;
 }
 
@@ -216,19 +260,40 @@ std::vector<std::uint8_t> pinned_flags(const Garment& garment) {
   return pinned;
 }
 
+namespace {
+
+void fit(GridShape& grid, const Vec3& scale, const Vec3& offset) {
+  grid.corner = scale.cwiseProduct(grid.corner) + offset;
+  grid.across = scale.cwiseProduct(grid.across);
+  grid.down = scale.cwiseProduct(grid.down);
+}
+void fit(TubeShape& tube, const Vec3& scale, const Vec3& offset) {
+  for (TubeShape::Ring& ring : tube.rings) {
+    ring.height = scale.y() * ring.height + offset.y();
+    ring.radius_x *= scale.x();
+    ring.radius_z *= scale.z();
+    ring.centre_x = scale.x() * ring.centre_x + offset.x();
+    ring.centre_z = scale.z() * ring.centre_z + offset.z();
+  }
+}
+void fit(DiscShape& disc, const Vec3& scale, const Vec3& offset) {
+  disc.centre = scale.cwiseProduct(disc.centre) + offset;
+  disc.radius_x *= scale.x();
+  disc.radius_z *= scale.z();
+}
+void fit(MeshShape& mesh, const Vec3& scale, const Vec3& offset) {
+  for (Vec3& p : mesh.positions) p = scale.cwiseProduct(p) + offset;
+}
+
+} // namespace
+
 GarmentDescription fitted(GarmentDescription description, const Vec3& scale, const Vec3& offset) {
-  if (auto* grid = std::get_if<GridShape>(&description.shape)) {
-    grid->corner = scale.cwiseProduct(grid->corner) + offset;
-    grid->across = scale.cwiseProduct(grid->across);
-    grid->down = scale.cwiseProduct(grid->down);
-  } else {
-    for (TubeShape::Ring& ring : std::get<TubeShape>(description.shape).rings) {
-      ring.height = scale.y() * ring.height + offset.y();
-      ring.radius_x *= scale.x();
-      ring.radius_z *= scale.z();
-      ring.centre_x = scale.x() * ring.centre_x + offset.x();
-      ring.centre_z = scale.z() * ring.centre_z + offset.z();
-    }
+  std::visit([&](auto& shape) { fit(shape, scale, offset); }, description.shape);
+  for (Attachment& attachment : description.attachments) {
+    if (attachment.above) *attachment.above = scale.y() * *attachment.above + offset.y();
+    if (!attachment.within) continue;
+    attachment.within->centre = scale.cwiseProduct(attachment.within->centre) + offset;
+    attachment.within->radius *= std::cbrt(scale.prod()); // a ball it stays
   }
   return description;
 }

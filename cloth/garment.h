@@ -37,33 +37,61 @@ struct TubeShape {
   /// Without a value the cloth is woven shut, column 0 next to the last. With one, the first and the last column lie on
   /// each other and are sewn together from row 0 down to this fraction of the rows; below is a slit.
   std::optional<double> seam;
+  bool pressed = false; ///< it keeps the roundness of its rest shape; else it is sewn from flat cloth
 };
 
-/// How the cloth answers to being pulled. Stiffnesses are those of the sheet (force per metre of width and unit
-/// strain), so that a finer grid of springs is the same cloth.
+/// A round sheet that lies level, its front up: rings of particles about the centre, of triangles nearly all of one
+/// size.
+struct DiscShape {
+  Vec3 centre = Vec3::Zero();            ///< m
+  double radius_x = 0.0, radius_z = 0.0; ///< half axes, m
+  int rings = 0;                         ///< of triangles, from the hole or the centre outwards
+  double hole = 0.0;                     ///< of the radius, in [0, 1): how far the hole in the middle reaches
+};
+
+/// Any triangles. Corners that share a place are one particle already.
+struct MeshShape {
+  std::vector<Vec3> positions; ///< model space at rest, m
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  bool pressed = false; ///< it keeps the angles of its rest shape; else it is sewn from flat cloth
+};
+
+/// How the cloth answers to being pulled and bent. Stiffnesses are those of the sheet (force per metre of width and
+/// unit strain; energy B kappa^2 / 2 per area and curvature kappa), so that a finer grid is the same cloth.
 struct Fabric {
-  double density = 0.15;    ///< kg/m2
-  double stretch = 40.0;    ///< N/m, along warp and weft
-  double shear = 10.0;      ///< N/m
-  double bend = 2.0;        ///< N/m, of the springs between particles two apart
-  double drag = 0.5;        ///< 1/s: the air takes drag * m * v
-  double thickness = 0.004; ///< full gap of the sheet, m: particles keep half of it from colliders,
+  double density = 0.15;     ///< kg/m2
+  double stretch = 40.0;     ///< N/m, along warp and weft
+  double shear = 10.0;       ///< N/m
+  double bend = 1e-5;        ///< N m, the bending rigidity B (moment per metre of width and unit curvature)
+  double bend_springs = 2.0; ///< N/m, of the springs between particles two apart: the report's stand-in for bend
+  double drag = 0.5;         ///< 1/s: the air takes drag * m * v
+  double thickness = 0.004;  ///< full gap of the sheet, m: particles keep half of it from colliders,
   double clearance = 0.0; ///< and this much more, m: for skin that proxies leave bare, and for chords between particles
 
   double contact_offset() const { return 0.5 * thickness + clearance; } ///< what particles keep from colliders, m
 };
 
-/// Holds the particles of one row or of chosen particles on a joint, where they are in the rest pose.
+/// Holds particles where they are in the rest pose: on a joint, or on the skin next to them. Which ones: those of some
+/// rows and columns of a grid or tube; or of any shape those within a ball, above a height, or both.
 struct Attachment {
-  std::string joint;
+  struct Ball {
+    Vec3 centre = Vec3::Zero(); ///< m, model space at rest
+    double radius = 0.0;        ///< m
+  };
+  std::string joint;               ///< empty when on the skin
   int first_row = 0, last_row = 0; ///< inclusive; negative counts from the end (-1 is the last row)
   int first_column = 0, last_column = -1;
+  std::optional<Ball> within = {};  ///< with this or
+  std::optional<double> above = {}; ///< with this (y, m), rows and columns do not count
+  bool skin = false;
+
+  bool by_place() const { return within || above; }
 };
 
 struct GarmentDescription {
   std::string file; ///< for messages
   std::string name;
-  std::variant<GridShape, TubeShape> shape;
+  std::variant<GridShape, TubeShape, DiscShape, MeshShape> shape;
   Fabric fabric;
   std::vector<Attachment> attachments;
   std::array<float, 3> colour = {0.7f, 0.2f, 0.25f}; ///< linear RGB, for drawing only
@@ -93,7 +121,9 @@ struct Seam {
   int i = 0, j = 0;
 };
 
-/// Positions are in the character's model space at rest, m. Particle (row, column) has index row * columns + column.
+/// Positions are in the character's model space at rest, m. Of a grid or tube, particle (row, column) has index
+/// row * columns + column. A disc or mesh has rows = columns = 0: only its triangles tell what is next to what, and its
+/// springs are their edges.
 struct Garment {
   std::string name;
   int rows = 0, columns = 0;
@@ -103,17 +133,18 @@ struct Garment {
   std::vector<Spring> springs; ///< structural ones first
   int structural_count = 0;
   std::vector<Seam> seams;
-  std::vector<Attachment> attachments; ///< rows and columns resolved to non-negative numbers
+  std::vector<Attachment> attachments; ///< rows and columns, where they count, resolved to non-negative numbers
   std::vector<Pin> pins;
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< normals point out of a tube, towards across x down of a grid
   Fabric fabric;
+  bool pressed = false; ///< keeps the angles of its rest shape
   std::array<float, 3> colour = {};
 
   int particle_count() const { return static_cast<int>(rest_positions.size()); }
 };
 
 /// Throws InputError when the description cannot be cloth: fewer than 2 x 2 particles, cells without area, an
-/// attachment beyond the rows, a particle pinned twice.
+/// attachment beyond the rows or without a particle, a particle pinned twice.
 Garment build_garment(const GarmentDescription& description);
 
 /// One entry a particle: 1 where it is pinned.

@@ -18,6 +18,11 @@ void MassSpring::reset(std::span<const Vec3> positions) {
   renew_forces(0);
 }
 
+void MassSpring::restore(const Particles& state) {
+  particles_ = state;
+  renew_forces(0);
+}
+
 void MassSpring::integrate(const FrameInput& input, double h) {
   const double drag = garment_->fabric.drag + input.extra_drag;
   for (int i = 0; i < particles_.count(); ++i) {

@@ -20,6 +20,7 @@ public:
   explicit MassSpring(const Garment& garment);
 
   void reset(std::span<const Vec3> positions) override;
+  void restore(const Particles& state) override;
   std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }

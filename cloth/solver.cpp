@@ -1,6 +1,7 @@
 #include "cloth/solver.h"
 
 #include "cloth/mass_spring.h"
+#include "cloth/mesh_xpbd.h"
 #include "cloth/tolerances.h"
 #include "cloth/xpbd.h"
 
@@ -45,9 +46,20 @@ SolverKind solver_named(std::string_view name) {
   return static_cast<SolverKind>(found - k_solver_names.begin());
 }
 
-std::unique_ptr<Solver> make_solver(SolverKind kind, const Garment& garment) {
-  if (kind == SolverKind::mass_spring) return std::make_unique<MassSpring>(garment);
-  return std::make_unique<Xpbd>(garment);
+ContactFeatures contact_features_named(std::string_view name) {
+  const auto found = std::find(k_contact_features_names.begin(), k_contact_features_names.end(), name);
+  if (found == k_contact_features_names.end())
+    throw std::invalid_argument("no contact features called " + std::string(name));
+  return static_cast<ContactFeatures>(found - k_contact_features_names.begin());
+}
+
+std::unique_ptr<Solver> make_solver(const Garment& garment, const SolverOptions& options) {
+  if (options.kind == SolverKind::mass_spring) return std::make_unique<MassSpring>(garment);
+  if (garment.rows == 0) { // not woven in rows and columns
+    if (options.double_precision) return std::make_unique<MeshXpbd<double>>(garment);
+    return std::make_unique<MeshXpbd<float>>(garment);
+  }
+  return make_xpbd(garment, options);
 }
 
 } // namespace tutu::cloth

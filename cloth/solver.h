@@ -47,6 +47,17 @@ struct ContactCounts {
   std::int64_t contacts = 0;   ///< projections
 };
 
+/// Since the solver was made; all 0 without SolverOptions::self_collision.
+struct SelfCollisionCounts {
+  std::int64_t substeps = 0;
+  std::int64_t searches = 0;   ///< spatial hashes built
+  std::int64_t candidates = 0; ///< pairs they gave
+  std::int64_t tests = 0;      ///< pairs whose distance was measured
+  std::int64_t contacts = 0;   ///< pairs that were pushed apart
+  std::int64_t slowed = 0;     ///< particles whose way in a substep was cut
+  std::int64_t loose = 0;      ///< pairs for which the bound of self_collision.h was not kept in a substep
+};
+
 /// forces += those of all springs at `positions`: for spring (i, j), K (|d| - L) d/|d| on i with d = x_j - x_i, the
 /// opposite on j. N. Returns the index of the first structural spring whose length is not within
 /// (1 + k_diverged_stretch) of its rest length.
@@ -63,12 +74,16 @@ public:
   /// At rest at these positions (world, one a particle).
   virtual void reset(std::span<const Vec3> positions) = 0;
 
+  /// In motion as in `state`, which particles() gave earlier: how a bad frame is taken back.
+  virtual void restore(const Particles& state) = 0;
+
   /// One frame in `input.substeps` equal substeps. On divergence the state is that of the substep in which it happened.
   virtual std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) = 0;
 
   virtual const Particles& particles() const = 0;
   virtual const SolverTimes& times() const = 0; ///< of the last frame
   virtual const ContactCounts& contact_counts() const = 0;
+  virtual SelfCollisionCounts self_collision_counts() const { return {}; }
 };
 
 enum class SolverKind {
@@ -76,10 +91,28 @@ enum class SolverKind {
   xpbd         ///< extended position-based dynamics in small steps, threads solved as wholes
 };
 
+/// What of the cloth meets colliders, besides its particles.
+enum class ContactFeatures {
+  automatic, ///< triangles where a cell of the garment is larger than the smallest collider in reach
+  particles, ///< nothing besides
+  triangles  ///< with their edges
+};
+inline constexpr std::array<std::string_view, 3> k_contact_features_names = {"auto", "particles", "triangles"};
+ContactFeatures contact_features_named(std::string_view name); ///< like solver_named
+
+struct SolverOptions {
+  SolverKind kind = SolverKind::xpbd;
+  ContactFeatures features = ContactFeatures::automatic;
+  int passes = 1;    ///< xpbd: over the constraints, a substep; more than one pays on fine sheets (256 a side)
+  bool swept = true; ///< contacts by time of impact where something moves farther than it is thick
+  bool self_collision = false;   ///< particles of the garment keep apart (self_collision.h)
+  bool double_precision = false; ///< of the kernels: for references
+};
+
 /// As in scene files and on the command line, in the order of SolverKind.
 inline constexpr std::array<std::string_view, 2> k_solver_names = {"mass_spring", "xpbd"};
 std::string_view name_of(SolverKind kind);
 SolverKind solver_named(std::string_view name); ///< one of k_solver_names; std::invalid_argument for any other
-std::unique_ptr<Solver> make_solver(SolverKind kind, const Garment& garment);
+std::unique_ptr<Solver> make_solver(const Garment& garment, const SolverOptions& options);
 
 } // namespace tutu::cloth

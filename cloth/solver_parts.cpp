@@ -21,10 +21,14 @@ void follow_pins(const Garment& garment, const FrameInput& input, double s, doub
   }
 }
 
+double share_of_second(const Garment& garment, std::span<const std::uint8_t> pinned, const Seam& seam) {
+  if (pinned[seam.i] != pinned[seam.j]) return pinned[seam.j] ? 1.0 : 0.0;
+  return garment.masses[seam.j] / (garment.masses[seam.i] + garment.masses[seam.j]);
+}
+
 void close_seams(const Garment& garment, std::span<const std::uint8_t> pinned, Particles& particles) {
   for (const Seam& seam : garment.seams) {
-    double share = garment.masses[seam.j] / (garment.masses[seam.i] + garment.masses[seam.j]);
-    if (pinned[seam.i] != pinned[seam.j]) share = pinned[seam.j] ? 1.0 : 0.0;
+    const double share = share_of_second(garment, pinned, seam);
     for (std::vector<Vec3>* field : {&particles.positions, &particles.velocities}) {
       Vec3 &a = (*field)[seam.i], &b = (*field)[seam.j];
       a = b = (1.0 - share) * a + share * b;

@@ -16,6 +16,9 @@ Clock::time_point lap(Clock::time_point from, double& sum);
 /// Pinned particles at their targets at `s` of the frame, with the velocity that took them there within `h` seconds.
 void follow_pins(const Garment& garment, const FrameInput& input, double s, double h, Particles& particles);
 
+/// Where the sides of a seam meet, from the first (0) to the second (1): their centre of mass; a pinned side leads.
+double share_of_second(const Garment& garment, std::span<const std::uint8_t> pinned, const Seam& seam);
+
 /// Both sides of a seam meet at their common centre of mass with their common momentum; a pinned side leads.
 void close_seams(const Garment& garment, std::span<const std::uint8_t> pinned, Particles& particles);
 

@@ -25,7 +25,108 @@ inline constexpr double k_margin_growth = 1.5;
 /// (1e-13), far below any thickness.
 inline constexpr double k_travel_slack = 1e-9;
 
+/// m. The same for a tile of a woven sheet, which asks for many particles at once: a wider margin costs it a box or
+/// two, a second search in a frame much more.
+inline constexpr double k_least_tile_margin = 0.01;
+
+/// m. Rounding slack of "cannot have arrived yet" for tiles, whose distances may be in single precision: above the
+/// rounding of coordinates of two metres (1e-7), below any thickness.
+inline constexpr double k_tile_travel_slack = 1e-5;
+
+/// How much longer than at rest a cell may be and still be found by its corners.
+inline constexpr double k_cell_stretch = 1.5;
+
+/// m. How far a collider may poke into the middle of a cell whose corners clear it: below what is seen, and below
+/// k_most_rise.
+inline constexpr double k_tolerated_poke = 0.0003;
+
+/// m. Corners may keep so much more than the cloth's thickness from a collider to meet k_tolerated_poke; where they
+/// would have to keep more, the cloth would float, and edges and triangles are asked instead.
+inline constexpr double k_most_rise = 0.003;
+
+/// How much longer than at rest a cell is taken to be for that.
+inline constexpr double k_worn_cell = 1.15;
+
+/// How many times as far as a contact point itself its corners may be moved to bring it out. A point beside a pinned
+/// corner would throw the free one by any lever. Above what equal masses ask for (1.2), and those of a border (1.9).
+inline constexpr double k_longest_lever = 2.0;
+
+/// m/s. How fast cloth that began inside a collider is worked out of it: within a second out of any limb, and too slow
+/// to be thrown.
+inline constexpr double k_push_out_speed = 1.0;
+
+/// m/s. A faster particle has been thrown, by a start in disorder or a jump that was not told: it is slowed to this.
+/// Above any limb (a kick reaches 20 m/s).
+inline constexpr double k_fastest_particle = 50.0;
+
 /// m/s. A drape has settled when no particle is faster: 1 mm of creep a second is not seen.
 inline constexpr double k_settled_speed = 0.001;
+
+/// How many times a frame that diverged may be taken again, each time with twice the substeps: 64 times as many in the
+/// end, which stands springs 4096 times as stiff as the first try did. Beyond it is not the step that is wrong.
+inline constexpr int k_recovery_tries = 6;
+
+/// Substeps a frame beyond which no try goes, unless a frame that asks for more itself: 2000 are 120 000 a second, 8
+/// microseconds each, in which the stiffest cloth of a centimetre's cells is followed; and a second or so of computing.
+inline constexpr int k_most_recovery_substeps = 2000;
+
+/// Frames in a row that may be carried only by taking them for jumps. Cloth that is stopped that often is not simulated
+/// any more; few enough that nobody takes it for a run, more than a bad start or a blow needs.
+inline constexpr int k_stops_in_a_row = 10;
+
+/// Stretch that mending leaves to an edge: cloth that wears it is far from k_diverged_stretch, and a solver does the
+/// rest.
+inline constexpr double k_mended_stretch = 0.5;
+
+/// Passes over all edges that mending takes at most. A pass carries a correction from row to row, so more than a fine
+/// garment has rows.
+inline constexpr int k_mending_passes = 400;
+
+/// Good frames after which the substeps that a recovery left behind are halved: half a second at 60 frames/s, longer
+/// than a kick or a landing, so that the same blow is not met unprepared twice.
+inline constexpr int k_calm_frames = 30;
+
+/// Share of what is safe that cloth and a collider may move against each other within a substep. Safe is what keeps a
+/// particle on its side of the collider's axis; half of it, since constraints and pushes move particles besides.
+inline constexpr double k_safe_share = 0.5;
+
+/// Substeps a frame that adaptive substeps never go beyond (a scene may ask for more itself). At 60 frames/s a limb of
+/// 6 cm is then safe up to 180 m/s: beyond it is no motion but a jump.
+inline constexpr int k_most_adaptive_substeps = 100;
+
+/// Distance that particles of a garment keep from each other, over the covering radius of its cells: above k_worn_cell,
+/// or stretched cells would let a particle through; below sqrt(2), at which neighbours in a square cell would touch.
+inline constexpr double k_cover = 1.25;
+
+/// Share of that distance which must be left to a pair, one pass of pushing being inexact, for self-collision to claim
+/// its bound. Above k_worn_cell / k_cover.
+inline constexpr double k_held = 0.95;
+
+/// Particles closer at rest than this many times the distance they keep belong to one patch of cloth: above the
+/// diagonal of a square cell, 2 / k_cover = 1.6; below two of its sides, 2.26, so that a fold is seen.
+inline constexpr double k_same_patch = 2.0;
+
+/// How much beyond the distance it keeps, over that, a pair is looked at in a substep: a push of one pair may bring
+/// another nearer by so much. More would be asked in vain.
+inline constexpr double k_near = 0.1;
+
+/// Passes over touching pairs a substep: the second mends what the first one's pushes did to each other.
+inline constexpr int k_self_passes = 2;
+
+/// The way in a substep, over the distance it keeps, beyond which a particle has been thrown. At 10 substeps a frame
+/// and 1 cm, 16 m/s against the rest of the garment.
+inline constexpr double k_farthest_way = 3.0;
+
+/// How far the way that slowed particles are given may be from the garment's mean way, over the least distance kept:
+/// what is slowed then stays within k_most_room.
+inline constexpr double k_most_off = 2.0;
+
+/// Substeps that the candidates of self-collision are meant to last where cloth is fast (more cost more than they
+/// save), and the least and most room (over the distance kept) they are given for it. The cost rises with the square of
+/// the room; flat cloth has no candidates up to 0.58. The most must not be below k_farthest_way.
+inline constexpr double k_substeps_a_search = 1.3, k_least_room = 0.5, k_most_room = 3.0;
+
+/// Coulomb coefficient of cloth on cloth: woven cotton on itself measures 0.2 to 0.5.
+inline constexpr double k_cloth_friction = 0.3;
 
 } // namespace tutu::cloth

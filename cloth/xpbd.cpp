@@ -1,159 +1,177 @@
 #include "cloth/xpbd.h"
 
+#include "cloth/contact_search.h"
+#include "cloth/self_collision.h"
 #include "cloth/solver_parts.h"
+#include "cloth/tolerances.h"
+#include "cloth/woven_contacts.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tutu::cloth {
+namespace {
 
-Xpbd::Xpbd(const Garment& garment)
-    : garment_(&garment), pinned_(pinned_flags(garment)), contacts_(garment.fabric.contact_offset()) {
-  for (int i = 0; i < garment.particle_count(); ++i)
-    inverse_masses_.push_back(pinned_[i] ? 0.0 : 1.0 / garment.masses[i]);
-
-  // Warp runs down the columns; its spring from (row, column) to the row below is known by its two ends.
-  for (int column = 0; column < garment.columns; ++column) {
-    Thread thread;
-    for (int row = 0; row < garment.rows; ++row) thread.particles.push_back(row * garment.columns + column);
-    thread.springs.resize(garment.rows - 1);
-    threads_.push_back(thread);
-  }
-  for (const Spring& spring : garment.springs) compliances_.push_back(1.0 / spring.stiffness);
-  std::vector<int> weft;
-  for (int k = 0; k < static_cast<int>(garment.springs.size()); ++k) {
-    const Spring& spring = garment.springs[k];
-    if (k >= garment.structural_count) loose_springs_.push_back(k);
-    else if (spring.j == spring.i + garment.columns)
-      threads_[spring.i % garment.columns].springs[spring.i / garment.columns] = k;
-    else weft.push_back(k);
-  }
-  loose_springs_.insert(loose_springs_.end(), weft.begin(), weft.end());
-  multipliers_.resize(garment.springs.size());
-  rows_.resize(garment.rows);
-  reset(garment.rest_positions);
-}
-
-void Xpbd::reset(std::span<const Vec3> positions) {
-  particles_.positions.assign(positions.begin(), positions.end());
-  particles_.velocities.assign(positions.size(), Vec3::Zero());
-  before_ = particles_.positions;
-}
-
-void Xpbd::predict(const FrameInput& input, double s, double h) {
-  const double kept = 1.0 / (1.0 + h * (garment_->fabric.drag + input.extra_drag));
-  before_ = particles_.positions;
-  for (int i = 0; i < particles_.count(); ++i) {
-    if (pinned_[i]) continue;
-    particles_.velocities[i] = kept * (particles_.velocities[i] + h * input.gravity);
-    particles_.positions[i] += h * particles_.velocities[i];
-  }
-  follow_pins(*garment_, input, s, h, particles_);
-}
-
-void Xpbd::solve_spring(int spring, double per_h2) {
-  const Spring& s = garment_->springs[spring];
-  const double wi = inverse_masses_[s.i], wj = inverse_masses_[s.j];
-  const Vec3 d = particles_.positions[s.j] - particles_.positions[s.i];
-  const double length = d.norm();
-  if (wi + wj == 0.0 || !(length > 0.0)) return;
-  const double compliance = compliances_[spring] * per_h2;
-  double& lambda = multipliers_[spring];
-  const double step = (s.rest_length - length - compliance * lambda) / (wi + wj + compliance);
-  lambda += step;
-  const Vec3 pull = (step / length) * d;
-  particles_.positions[s.i] -= wi * pull;
-  particles_.positions[s.j] += wj * pull;
-}
-
-void Xpbd::solve_thread(const Thread& thread, double per_h2) {
-  // One Newton step of (J M^-1 J^T + a/h^2) dlambda = -C - a/h^2 lambda over the thread: tridiagonal, since an edge
-  // shares a particle with the next one only. Forward elimination, then back substitution and the particles' moves.
-  const int edges = static_cast<int>(thread.springs.size());
-  for (int k = 0; k < edges; ++k) {
-    const Spring& spring = garment_->springs[thread.springs[k]];
-    const double w_above = inverse_masses_[spring.i], w_below = inverse_masses_[spring.j];
-    const Vec3 d = particles_.positions[spring.j] - particles_.positions[spring.i];
-    const double length = d.norm();
-    Row& row = rows_[k];
-    row.direction = length > 0.0 ? Vec3((1.0 / length) * d) : Vec3(Vec3::Zero());
-    const double compliance = compliances_[thread.springs[k]] * per_h2;
-    const double residual = spring.rest_length - length - compliance * multipliers_[thread.springs[k]];
-    const double diagonal = w_above + w_below + compliance;
-    if (k == 0) {
-      row.m = 1.0 / diagonal;
-      row.d = residual * row.m;
-    } else {
-      const double coupling = -w_above * row.direction.dot(rows_[k - 1].direction);
-      row.m = 1.0 / (diagonal - coupling * coupling * rows_[k - 1].m);
-      row.d = (residual - coupling * rows_[k - 1].d) * row.m;
+template <class T> class Xpbd final : public Solver {
+public:
+  Xpbd(const Garment& garment, const SolverOptions& options)
+      : garment_(&garment), kernel_(woven_kernel<T>()), sheet_(garment, options.passes > 1), passes_(options.passes),
+        pinned_(pinned_flags(garment)), contacts_(garment, options), search_(garment.fabric.contact_offset()) {
+    for (const Seam& seam : garment.seams)
+      seam_shares_.push_back(static_cast<T>(share_of_second(garment, pinned_, seam)));
+    if (options.self_collision) {
+      self_ = std::make_unique<SelfCollision>(garment);
+      start_.resize(garment.rest_positions.size());
+      now_.resize(garment.rest_positions.size());
     }
+    reset(garment.rest_positions);
   }
-  double below = 0.0; // the multiplier's step of the edge below
-  for (int k = edges - 1; k >= 0; --k) {
-    const int lower = thread.particles[k + 1];
-    const double w = inverse_masses_[lower];
-    const double coupling = k + 1 < edges ? -w * rows_[k + 1].direction.dot(rows_[k].direction) : 0.0;
-    const double step = rows_[k].d - coupling * rows_[k].m * below;
-    multipliers_[thread.springs[k]] += step;
-    particles_.positions[lower] += (w * step) * rows_[k].direction;
-    particles_.positions[thread.particles[k]] -= (inverse_masses_[thread.particles[k]] * step) * rows_[k].direction;
-    below = step;
+
+  void reset(std::span<const Vec3> positions) override {
+    particles_.positions.assign(positions.begin(), positions.end());
+    particles_.velocities.assign(positions.size(), Vec3::Zero());
+    restore(particles_);
   }
+
+  void restore(const Particles& state) override {
+    if (&state != &particles_) particles_ = state;
+    in_step_ = true;
+    pins_.clear();
+    sheet_.set(particles_.positions, particles_.velocities);
+    contacts_.forget();
+    if (self_) self_->forget();
+  }
+
+  std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) override;
+
+  /// Put together when asked for.
+  const Particles& particles() const override {
+    if (!in_step_) {
+      sheet_.get(particles_);
+      for (std::size_t k = 0; k < pins_.size(); ++k) particles_.positions[garment_->pins[k].particle] = pins_[k];
+    }
+    in_step_ = true;
+    return particles_;
+  }
+  const SolverTimes& times() const override { return times_; }
+  const ContactCounts& contact_counts() const override { return asks_each_ ? search_.counts() : contacts_.counts(); }
+  SelfCollisionCounts self_collision_counts() const override { return self_ ? self_->counts() : SelfCollisionCounts{}; }
+
+private:
+  void follow_pins(const FrameInput& input, double s, double h);
+  void close_seams();
+  bool part_layers(double h);
+  void ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s);
+  Divergence diverged(int substep);
+
+  const Garment* garment_;
+  WovenKernel<T> kernel_;
+  WovenSheet<T> sheet_;
+  int passes_ = 1;
+  std::vector<std::uint8_t> pinned_;
+  std::vector<T> seam_shares_;
+  WovenContacts<T> contacts_; ///< of the hybrid backend
+  ContactSearch search_;      ///< of the others
+  bool asks_each_ = false;
+  std::vector<Vec3> pins_;              ///< where they are to the last bit; none before the first frame
+  std::unique_ptr<SelfCollision> self_; ///< where asked for, with
+  std::vector<Vec3> start_, now_;       ///< room for the positions it works on
+  mutable Particles particles_;         ///< room for what particles() shows
+  mutable bool in_step_ = false;        ///< with the sheet
+  SolverTimes times_;
+};
+
+template <class T> void Xpbd<T>::follow_pins(const FrameInput& input, double s, double h) {
+  for (std::size_t k = 0; k < garment_->pins.size(); ++k)
+    sheet_.pin_to(garment_->pins[k].particle, (1.0 - s) * input.pins_start[k] + s * input.pins_end[k], h);
 }
 
-void Xpbd::solve_constraints(double h) {
-  const double per_h2 = 1.0 / (h * h);
-  std::fill(multipliers_.begin(), multipliers_.end(), 0.0);
-  for (const int spring : loose_springs_) solve_spring(spring, per_h2);
-  close_seams(*garment_, pinned_, particles_); // both sides start the threads together, so that neither is torn off
-  constexpr int k_newton_steps = 2;
-  for (const Thread& thread : threads_) {
-    for (int k = 0; k < k_newton_steps; ++k) solve_thread(thread, per_h2);
-    for (const int spring : thread.springs) solve_spring(spring, per_h2);
-  }
+template <class T> void Xpbd<T>::close_seams() {
+  for (std::size_t k = 0; k < garment_->seams.size(); ++k)
+    sheet_.join(garment_->seams[k].i, garment_->seams[k].j, seam_shares_[k]);
 }
 
-std::optional<Divergence> Xpbd::check(int substep) {
-  for (int k = 0; k < garment_->structural_count; ++k) {
-    const Spring& spring = garment_->springs[k];
-    const double length = (particles_.positions[spring.j] - particles_.positions[spring.i]).norm();
-    if (length <= (1.0 + k_diverged_stretch) * spring.rest_length) continue; // false for a length that is no number
-    return find_divergence(*garment_, substep, particles_.positions);
-  }
-  return std::nullopt;
+/// Self-collision. Returns false when a particle's place is no number.
+template <class T> bool Xpbd<T>::part_layers(double h) {
+  sheet_.get_starts(start_);
+  sheet_.get_positions(now_);
+  if (!self_->resolve(start_, now_, h)) return false;
+  for (const int i : self_->moved()) sheet_.move_to(i, now_[i]);
+  close_seams();
+  return true;
 }
 
-std::optional<Divergence> Xpbd::step(const FrameInput& input, proxies::CollisionQuery& query) {
+/// Each particle by way of the query, in double: the plain form of contact, for the backends that have no other.
+template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s) {
+  sheet_.get_positions(particles_.positions);
+  search_.for_each_contact(query, s, pinned_, particles_,
+                           [&](int i, int collider, const proxies::Contact& contact, double push) {
+                             Vec3& x = particles_.positions[i];
+                             x += push * contact.normal;
+                             if (!input.friction.empty()) {
+                               const Vec3 slip = x - sheet_.start_position(i) - search_.surface_motion(collider, x);
+                               const Vec3 along = slip - slip.dot(contact.normal) * contact.normal;
+                               const double length = along.norm(), most = input.friction[collider] * push;
+                               x -= length > most ? Vec3((most / length) * along) : along;
+                             }
+                             sheet_.move_to(i, x);
+                           });
+}
+
+template <class T> Divergence Xpbd<T>::diverged(int substep) {
+  in_step_ = false;
+  return find_divergence(*garment_, substep, particles().positions);
+}
+
+template <class T> std::optional<Divergence> Xpbd<T>::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
   auto time = Clock::now();
-  contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
+  asks_each_ = query.name() != proxies::k_backend_names[static_cast<std::size_t>(proxies::Backend::hybrid)];
+  sheet_.follow();
+  if (asks_each_) search_.begin_frame(query, input.colliders, particles(), input.seconds);
+  else contacts_.begin_frame(query, input, sheet_);
   time = lap(time, times_.broad);
+
+  const WovenSheetView<T>& view = sheet_.view();
   const double h = input.seconds / input.substeps;
-  const auto rub = [&](int i, int collider, const proxies::Contact& contact, double push) {
-    Vec3& x = particles_.positions[i];
-    x += push * contact.normal;
-    if (input.friction.empty()) return;
-    const Vec3 slip = x - before_[i] - contacts_.surface_motion(collider, x);
-    const Vec3 along = slip - slip.dot(contact.normal) * contact.normal;
-    const double length = along.norm(), most = input.friction[collider] * push;
-    x -= length > most ? Vec3((most / length) * along) : along;
-  };
+  WovenStep<T> step;
+  step.h = static_cast<T>(h);
+  for (int axis = 0; axis < 3; ++axis) step.gravity[axis] = static_cast<T>(input.gravity[axis]);
+  step.kept = static_cast<T>(1.0 / (1.0 + h * (garment_->fabric.drag + input.extra_drag)));
+  step.fastest = static_cast<T>(k_fastest_particle);
+  step.passes = passes_;
+  kernel_.predict(view, step);
   for (int substep = 0; substep < input.substeps; ++substep) {
-    predict(input, static_cast<double>(substep + 1) / input.substeps, h);
-    solve_constraints(h);
-    close_seams(*garment_, pinned_, particles_);
+    const double s = static_cast<double>(substep + 1) / input.substeps;
+    follow_pins(input, s, h);
+    close_seams(); // both sides start the threads together, so that neither is torn off
+    const bool whole = kernel_.constraints(view, step);
+    close_seams();
     time = lap(time, times_.cloth);
-    if (!is_in_world(particles_)) return find_divergence(*garment_, substep, particles_.positions);
-    contacts_.for_each_contact(query, static_cast<double>(substep + 1) / input.substeps, pinned_, particles_, rub);
+    if (!whole || (self_ && !part_layers(h))) return diverged(substep);
+    if (asks_each_) {
+      sheet_.get_positions(particles_.positions);
+      if (!is_in_world(particles_)) return diverged(substep);
+      ask_each(query, input, s);
+    } else if (!contacts_.resolve(query, kernel_, sheet_, s, h)) {
+      return diverged(substep);
+    }
     time = lap(time, times_.contact);
-    for (int i = 0; i < particles_.count(); ++i)
-      if (!pinned_[i]) particles_.velocities[i] = (particles_.positions[i] - before_[i]) / h;
-    auto divergence = check(substep);
+    // The last substep's velocities are the frame's; those before are used up by the next prediction at once.
+    const bool is_last = substep + 1 == input.substeps;
+    if (!contacts_.finish(is_last ? kernel_.finish : kernel_.finish_and_predict, view, step)) return diverged(substep);
     time = lap(time, times_.cloth);
-    if (divergence) return divergence;
   }
+  pins_.assign(input.pins_end.begin(), input.pins_end.end());
+  in_step_ = false;
   return std::nullopt;
+}
+
+} // namespace
+
+std::unique_ptr<Solver> make_xpbd(const Garment& garment, const SolverOptions& options) {
+  if (options.double_precision) return std::make_unique<Xpbd<double>>(garment, options);
+  return std::make_unique<Xpbd<float>>(garment, options);
 }
 
 } // namespace tutu::cloth

@@ -1,10 +1,10 @@
 #include "proxies/broad_phase.h"
 
+#include "proxies/collider_motion.h"
+
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/narrowphase/collision_object.h>
-
-#include <algorithm>
 
 namespace tutu::proxies {
 namespace {
@@ -37,13 +37,6 @@ bool collect(fcl::CollisionObjectd* found, fcl::CollisionObjectd*, void* out) {
 }
 
 } // namespace
-
-Box swept_box(const Capsule& start, const Capsule& end) {
-  Box box(start.a);
-  box.extend(start.b).extend(end.a).extend(end.b);
-  const Vec3 grown = Vec3::Constant(std::max(start.radius, end.radius));
-  return {box.min() - grown, box.max() + grown};
-}
 
 struct BroadPhase::Tree {
   // Every object shares one geometry: the tree never looks at it, but FCL demands one.

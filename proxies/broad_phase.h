@@ -1,19 +1,13 @@
 // Which moving colliders come near a box: FCL's dynamic tree of boxes behind a face that shows no FCL.
 #pragma once
 
-#include "proxies/collider_set.h"
+#include "proxies/shapes.h"
 
 #include <memory>
 #include <span>
 #include <vector>
 
 namespace tutu::proxies {
-
-/// A box along the axes of the world, m.
-using Box = Eigen::AlignedBox3d;
-
-/// The box of everything the capsule covers while its ends move on straight lines: the box of both poses.
-Box swept_box(const Capsule& start, const Capsule& end);
 
 /// Not for use from several threads at once.
 class BroadPhase {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "proxies/collider.h"
+#include "proxies/collider_motion.h"
 #include "proxies/shapes.h"
 
 #include <optional>
@@ -15,13 +16,15 @@ namespace tutu::proxies {
 struct SweptColliders {
   std::span<const Capsule> start, end; ///< equal lengths, equal radii
   std::optional<Plane> ground;
+  /// Rotation vector of each collider from start to end, world, rad: what its surface does that its two ends do not
+  /// show (a sphere has one point only). Empty: none of them turns.
+  std::span<const Vec3> spin = {};
 
   int size() const { return static_cast<int>(start.size()); }
   int ground_index() const { return size(); }
 };
 
-/// The colliders at `s` in [0, 1] of the frame: end points move on straight lines; s = 0 and s = 1 give the ends' own
-/// bits. `out` has size() entries.
+/// The colliders at `s` in [0, 1] of the frame, each as capsule_at has it. `out` has size() entries.
 void colliders_at(const SweptColliders& colliders, double s, std::span<Capsule> out);
 
 /// Poses proxies from joint transforms. Disabled proxies are left out. Allocates only when built.
@@ -34,7 +37,8 @@ public:
   /// The frame's end becomes its start, and this pose its end.
   void advance(std::span<const Transform> world_from_joint);
 
-  SweptColliders swept() const { return {start_, end_, ground_}; }
+  /// A collider's spin is that of the joint that carries most of its first end.
+  SweptColliders swept() const { return {start_, end_, ground_, spin_}; }
 
   int size() const { return static_cast<int>(proxies_.size()); }
   const std::vector<Proxy>& proxies() const { return proxies_; } ///< enabled ones, in collider order
@@ -44,6 +48,8 @@ private:
   std::vector<Proxy> proxies_;
   std::optional<Plane> ground_;
   std::vector<Capsule> start_, end_;
+  std::vector<Quat> rotations_; // of each collider's joint at the frame's end
+  std::vector<Vec3> spin_;
 };
 
 } // namespace tutu::proxies

@@ -2,6 +2,8 @@
 //
 //   JSON --read_proxies--> Proxy on joints --ColliderSet--> capsules at both ends of a frame (world space)
 //   capsules --CollisionQuery--> candidates once a frame, contacts each substep
+//   collider_motion: where a capsule is between the ends of a frame, what it covers, how its surface moves
+//   signed_distance, feature_contact: a point, an edge, a triangle against a capsule; sweep: when they first touch
 //
 // Units m. Signed distance is negative inside; a contact normal is unit and points from the collider to the particle:
 // particle = closest + distance * normal. Spheres are capsules of no length, so the hot path knows one shape.
@@ -9,9 +11,12 @@
 #pragma once
 
 #include "proxies/collider.h"        // IWYU pragma: export
+#include "proxies/collider_motion.h" // IWYU pragma: export
 #include "proxies/collider_set.h"    // IWYU pragma: export
 #include "proxies/collision_query.h" // IWYU pragma: export
 #include "proxies/contact.h"         // IWYU pragma: export
+#include "proxies/feature_contact.h" // IWYU pragma: export
 #include "proxies/proxy_file.h"      // IWYU pragma: export
 #include "proxies/shapes.h"          // IWYU pragma: export
 #include "proxies/signed_distance.h" // IWYU pragma: export
+#include "proxies/sweep.h"           // IWYU pragma: export

@@ -58,4 +58,13 @@ void require_usable(std::span<const Vec3> points, double reach) {
     if (!in_range(points[i])) refuse("point " + std::to_string(i) + ' ' + exactly(points[i]), k_finite_point);
 }
 
+void require_usable(std::span<const Box> boxes) {
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Box& box = boxes[i];
+    if (in_range(box.min()) && in_range(box.max()) && !box.isEmpty()) continue;
+    refuse("box " + std::to_string(i) + " Box{" + exactly(box.min()) + ", " + exactly(box.max()) + '}',
+           "corners within +-1e12 m, the lower one first");
+  }
+}
+
 } // namespace tutu::proxies

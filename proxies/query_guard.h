@@ -15,5 +15,6 @@ void require_usable(const Capsule& capsule, int index);
 void require_usable(const std::optional<Plane>& ground);
 void require_usable(const Vec3& point);
 void require_usable(std::span<const Vec3> points, double reach);
+void require_usable(std::span<const Box> boxes); ///< also refuses an empty box
 
 } // namespace tutu::proxies

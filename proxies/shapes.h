@@ -11,6 +11,9 @@ struct Capsule {
   double radius = 0.0; ///< > 0
 };
 
+/// A box along the axes of the world, m.
+using Box = Eigen::AlignedBox3d;
+
 /// The solid half space normal . x <= offset; `normal` is unit and points out.
 struct Plane {
   Vec3 normal = Vec3::UnitY();

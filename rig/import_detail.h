@@ -37,15 +37,18 @@ struct Source {
   bool already_applied = false;          ///< assimp has put both into the root node
 };
 
+/// What a file is read for: which formats will do, and what messages say was expected.
+enum class Purpose { character, surface };
+
 /// The size of the file in bytes. Throws InputError when it is missing, empty, too large or not of an accepted format.
-std::uintmax_t check_acceptable(const std::filesystem::path& file);
+std::uintmax_t check_acceptable(const std::filesystem::path& file, Purpose purpose = Purpose::character);
 
 /// Throw InputError on joint and weight indices out of range and on weights that are negative or no number.
 void check_collada_skins(const std::string& file);
 void check_gltf_skins(const std::string& file);
 
 /// Reads an acceptable file. Throws InputError when assimp cannot read it.
-Source load(const std::filesystem::path& file);
+Source load(const std::filesystem::path& file, Purpose purpose = Purpose::character);
 
 /// A linear map as rotation * stretch: the polar decomposition, the rotation proper (a mirrored map has a stretch with
 /// negative determinant).

@@ -27,7 +27,7 @@ constexpr std::uintmax_t k_memory_per_byte = 64;                   ///< of the f
 constexpr std::uintmax_t k_least_seconds = 15;                     ///< of the processor; a body of 2 MB takes 0.1
 constexpr std::uintmax_t k_bytes_per_second = 2'000'000;
 
-enum class Answer : char { import = 'i', input_error = 'e', other_error = 'o' };
+enum class Answer : char { work = 'w', input_error = 'e', other_error = 'o' };
 
 std::uintmax_t memory_in_use() {
   std::ifstream statm("/proc/self/statm");
@@ -52,13 +52,15 @@ void bound_this_process(std::uintmax_t file_size) {
 }
 
 /// The bytes to hand back: the answer's kind, then the answer.
-std::string answer_of(const std::function<Import()>& work) {
+std::string answer_of(const std::function<void(Packer&)>& work) {
   Packer packer;
-  const auto kind = [&](Answer answer) { packer.raw(&answer, sizeof answer); };
+  const auto kind = [&](Answer answer) {
+    packer = Packer();
+    packer.raw(&answer, sizeof answer);
+  };
   try {
-    Import import = work();
-    kind(Answer::import);
-    pass(packer, import);
+    kind(Answer::work);
+    work(packer);
   } catch (const InputError& error) {
     kind(Answer::input_error);
     for (std::string part : {error.file(), error.place(), error.found(), error.expected()}) pass(packer, part);
@@ -90,7 +92,7 @@ std::string read_all(int descriptor) {
   }
 }
 
-[[noreturn]] void run_child(int descriptor, std::uintmax_t file_size, const std::function<Import()>& work) {
+[[noreturn]] void run_child(int descriptor, std::uintmax_t file_size, const std::function<void(Packer&)>& work) {
   bound_this_process(file_size);
   try {
     write_all(descriptor, answer_of(work));
@@ -126,9 +128,9 @@ void check(const Import& import, const std::string& file) {
   c.skeleton.check(file);
 }
 
-Import import_of(const std::string& answer, int status, const std::string& file) {
+std::string bytes_of(const std::string& answer, int status, const std::string& file, const std::string& expected) {
   if (answer.empty())
-    throw InputError(file, "", "a file that ends its reader " + why(status), "a rigged character that is not damaged");
+    throw InputError(file, "", "a file that ends its reader " + why(status), expected + " that is not damaged");
   Unpacker unpacker(answer);
   Answer kind{};
   unpacker.raw(&kind, sizeof kind);
@@ -142,24 +144,27 @@ Import import_of(const std::string& answer, int status, const std::string& file)
     pass(unpacker, what);
     throw std::runtime_error(what);
   }
-  Import import;
-  pass(unpacker, import);
-  if (kind != Answer::import || !unpacker.at_end()) throw std::runtime_error("the reader's answer is no answer");
-  check(import, file);
-  return import;
+  if (kind != Answer::work) throw std::runtime_error("the reader's answer is no answer");
+  return answer.substr(sizeof kind);
 }
 
 } // namespace
 
-Import isolated(const std::string& file, std::uintmax_t file_size, const std::function<Import()>& work) {
+std::string isolated_bytes(const std::string& file, std::uintmax_t file_size, const std::string& expected,
+                           const std::function<void(Packer&)>& work) {
   std::fflush(nullptr);
+  const auto unguarded = [&] {
+    Packer packer;
+    work(packer);
+    return packer.bytes();
+  };
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return work();
+  if (::pipe2(ends, O_CLOEXEC) != 0) return unguarded();
   const pid_t child = ::fork();
   if (child < 0) { // no process to be had: better unguarded than not at all
     ::close(ends[0]);
     ::close(ends[1]);
-    return work();
+    return unguarded();
   }
   if (child == 0) {
     ::close(ends[0]);
@@ -178,7 +183,20 @@ Import isolated(const std::string& file, std::uintmax_t file_size, const std::fu
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
-  return import_of(answer, status, file);
+  return bytes_of(answer, status, file, expected);
+}
+
+Import isolated(const std::string& file, std::uintmax_t file_size, const std::function<Import()>& work) {
+  const std::string bytes = isolated_bytes(file, file_size, "a rigged character", [&](Packer& packer) {
+    Import import = work();
+    pass(packer, import);
+  });
+  Unpacker unpacker(bytes);
+  Import import;
+  pass(unpacker, import);
+  if (!unpacker.at_end()) throw std::runtime_error("the reader's answer is no answer");
+  check(import, file);
+  return import;
 }
 
 } // namespace tutu::rig::import_detail

@@ -6,14 +6,20 @@
 #pragma once
 
 #include "rig/character.h"
+#include "rig/import_archive.h"
 
 #include <functional>
 #include <string>
 
 namespace tutu::rig::import_detail {
 
-/// The Import that `work` returns. Throws the InputError that `work` throws, and InputError naming `file` when the
-/// child dies. `file_size` (bytes) grants memory and time beyond the least.
+/// What `work` packs, in bytes. Throws the InputError that `work` throws, and InputError naming `file` and what was
+/// `expected` of it when the child dies. `file_size` (bytes) grants memory and time beyond the least. The bytes come
+/// from a process that may have been led astray: to be checked before they are believed.
+std::string isolated_bytes(const std::string& file, std::uintmax_t file_size, const std::string& expected,
+                           const std::function<void(Packer&)>& work);
+
+/// The Import that `work` returns, checked.
 Import isolated(const std::string& file, std::uintmax_t file_size, const std::function<Import()>& work);
 
 } // namespace tutu::rig::import_detail

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* k_expected = "a rigged character: .dae, .gltf, .glb, .fbx or .x";
+constexpr const char* k_expected_surface = "a surface: .obj, .ply, .stl, .gltf or .glb";
 constexpr std::uintmax_t k_largest_file = std::uintmax_t{1} << 30; // bytes
 constexpr std::size_t k_most_nodes = 100'000;
 
@@ -30,6 +31,16 @@ const std::map<std::string, std::string> k_reader_of = {{".dae", "Collada Import
                                                         {".glb", "glTF2 Importer"},
                                                         {".fbx", "Autodesk FBX Importer"},
                                                         {".x", "Direct3D XFile Importer"}};
+const std::map<std::string, std::string> k_surface_reader_of = {{".obj", "Wavefront Object Importer"},
+                                                                {".ply", "Stanford Polygon Library (PLY) Importer"},
+                                                                {".stl", "Stereolithography (STL) Importer"},
+                                                                {".gltf", "glTF2 Importer"},
+                                                                {".glb", "glTF2 Importer"}};
+
+const std::map<std::string, std::string>& readers_for(Purpose purpose) {
+  return purpose == Purpose::surface ? k_surface_reader_of : k_reader_of;
+}
+const char* expected_for(Purpose purpose) { return purpose == Purpose::surface ? k_expected_surface : k_expected; }
 
 std::string lower_extension(const fs::path& file) {
   std::string extension = file.extension().string();
@@ -141,22 +152,22 @@ Affine affine_of(const aiMatrix4x4& m) {
   return result;
 }
 
-std::uintmax_t check_acceptable(const fs::path& file) {
+std::uintmax_t check_acceptable(const fs::path& file, Purpose purpose) {
+  const char* expected = expected_for(purpose);
   std::error_code error;
-  if (!fs::exists(file, error)) throw InputError(file.string(), "", "no such file", k_expected);
-  if (!fs::is_regular_file(file, error))
-    throw InputError(file.string(), "", "something that is not a file", k_expected);
+  if (!fs::exists(file, error)) throw InputError(file.string(), "", "no such file", expected);
+  if (!fs::is_regular_file(file, error)) throw InputError(file.string(), "", "something that is not a file", expected);
   const std::string extension = lower_extension(file);
-  if (!k_reader_of.contains(extension))
+  if (!readers_for(purpose).contains(extension))
     throw InputError(file.string(), "", extension.empty() ? "a name without extension" : "a " + extension + " file",
-                     k_expected);
+                     expected);
   const std::uintmax_t size = fs::file_size(file, error);
-  if (error || size == 0) throw InputError(file.string(), "", "an empty file", k_expected);
+  if (error || size == 0) throw InputError(file.string(), "", "an empty file", expected);
   if (size > k_largest_file) throw InputError(file.string(), "", std::to_string(size) + " bytes", "at most 1 GiB");
   return size;
 }
 
-Source load(const fs::path& file) {
+Source load(const fs::path& file, Purpose purpose) {
   Source source;
   source.file = file.string();
   const std::string extension = lower_extension(file);
@@ -168,11 +179,11 @@ Source load(const fs::path& file) {
   importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true); // else a file without mesh gets one of cones
-  keep_only_reader(*importer, k_reader_of.at(extension));
+  keep_only_reader(*importer, readers_for(purpose).at(extension));
   const aiScene* scene = importer->ReadFile(source.file, 0);
   if (!scene || !scene->mRootNode) {
     throw InputError(source.file, "", "a file that cannot be read (" + readable(importer->GetErrorString()) + ")",
-                     k_expected);
+                     expected_for(purpose));
   }
   check_indices(*scene, source.file);
   scene = importer->ApplyPostProcessing(aiProcess_Triangulate);

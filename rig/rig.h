@@ -21,3 +21,4 @@
 #include "rig/mesh.h"      // IWYU pragma: export
 #include "rig/skeleton.h"  // IWYU pragma: export
 #include "rig/skin.h"      // IWYU pragma: export
+#include "rig/surface.h"   // IWYU pragma: export

@@ -43,7 +43,8 @@ void dancer_pins(const cloth::Garment& skirt, double t, DancerMotion motion, std
 
 inline constexpr double k_dancer_friction = 0.3; ///< cloth against every proxy; mass_spring knows none
 
-/// Substeps a frame that suit a solver: what mass_spring needs to stand this skirt, and a third of that for xpbd. They
+/// Substeps a frame that suit a solver: what mass_spring needs to stand this skirt; for xpbd what holds its
+/// threads within 10 %. They
 /// grow with n, as the time a wave needs from one particle to the next shrinks.
 int default_substeps(cloth::SolverKind solver, int n);
 
@@ -51,8 +52,9 @@ struct DancerSkirtSetup {
   int n = 30;
   cloth::SolverKind solver = cloth::SolverKind::xpbd;
   int substeps = default_substeps(cloth::SolverKind::xpbd, 30);
-  proxies::Backend backend = proxies::Backend::fcl;
+  proxies::Backend backend = proxies::Backend::hybrid;
   DancerMotion motion = DancerMotion::dance;
+  cloth::SolverOptions options = {}; ///< `solver` is its kind
 };
 
 /// The scene in motion.

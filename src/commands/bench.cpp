@@ -1,6 +1,8 @@
+#include "rig/error.h"
 #include "rig/file_io.h"
 #include "src/bench/bench_metrics.h"
 #include "src/bench/dancer_skirt.h"
+#include "src/bench/stability_report.h"
 #include "src/commands/commands.h"
 #include "src/commands/scene_options.h"
 #include "src/interrupt.h"
@@ -20,10 +22,10 @@ constexpr const char* k_dancer_skirt = "dancer-skirt";
 constexpr int k_first_measured = 60;
 
 struct Options {
-  std::string name = k_dancer_skirt, solver = "xpbd", backend = "fcl", json;
-  int n = 30, frames = k_dancer_frames;
+  std::string name = k_dancer_skirt, solver = "xpbd", backend = "hybrid", features = "auto", json;
+  int n = 30, frames = k_dancer_frames, runs = k_stability_runs, passes = 1;
   std::optional<int> substeps;
-  bool still = false;
+  bool still = false, fixed_substeps = false, double_precision = false;
 };
 
 struct Run {
@@ -128,14 +130,16 @@ std::string text_of(const Options& options, const DancerSkirt& scene, const RunM
   return text;
 }
 
-int run(const Options& options) {
-  catch_interrupt();
+int run_dancer_skirt(const Options& options) {
   DancerSkirtSetup setup;
   setup.n = options.n;
   setup.solver = cloth::solver_named(options.solver);
   setup.substeps = options.substeps.value_or(default_substeps(setup.solver, options.n));
   setup.backend = proxies::backend_named(options.backend);
   setup.motion = options.still ? DancerMotion::still : DancerMotion::dance;
+  setup.options.features = cloth::contact_features_named(options.features);
+  setup.options.passes = options.passes;
+  setup.options.double_precision = options.double_precision;
   DancerSkirt scene(setup);
   const Run done = run_scene(scene, options.frames);
   const RunMetrics metrics = summarise(done.metrics, done.ms);
@@ -146,15 +150,38 @@ int run(const Options& options) {
   return done.failure || interrupted() ? k_not_met : k_ok;
 }
 
+int run_stability_family(const Options& options) {
+  StabilitySetup setup;
+  setup.solver.kind = cloth::solver_named(options.solver);
+  setup.backend = proxies::backend_named(options.backend);
+  setup.adaptive = !options.fixed_substeps;
+  if (options.substeps) setup.substeps = *options.substeps;
+  const StabilityReport report = report_stability(options.name, setup, options.runs, [] { return !interrupted(); });
+  if (!options.json.empty()) write_file(options.json, report.json.dump(2) + "\n");
+  fmt::print("{}", report.text);
+  if (interrupted()) fmt::print(stderr, "tutu: interrupted\n");
+  return report.passed ? k_ok : k_not_met;
+}
+
+/// Options that mean nothing for the scene are refused: `of_skirt` were given that belong to the one, `of_others` to
+/// the others.
+void refuse_foreign(const std::string& name, const std::vector<CLI::Option*>& of_skirt,
+                    const std::vector<CLI::Option*>& of_others) {
+  const bool skirt = name == k_dancer_skirt;
+  for (const CLI::Option* option : skirt ? of_others : of_skirt)
+    if (option->count() > 0)
+      throw InputError("", option->get_name(), "it with " + name,
+                       std::string("it with ") + (skirt ? "a scene of stability" : k_dancer_skirt) + " only");
+}
+
 } // namespace
 
 void add_bench(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("bench", "Run a standard scene and measure speed and accuracy together");
   auto options = std::make_shared<Options>();
-  command->add_option("name", options->name, "The scene")->required()->check(CLI::IsMember({k_dancer_skirt}));
-  command->add_option("--n", options->n, "Particles along each side of the cloth")
-      ->check(CLI::Range(8, 1024))
-      ->capture_default_str();
+  std::vector<std::string> names = stability_names();
+  names.insert(names.begin(), k_dancer_skirt);
+  command->add_option("name", options->name, "The scene")->required()->check(CLI::IsMember(names));
   command->add_option("--solver", options->solver, "What moves the cloth")
       ->check(one_of(cloth::k_solver_names))
       ->capture_default_str();
@@ -163,12 +190,38 @@ void add_bench(CLI::App& app, int& status) {
   command->add_option("--backend", options->backend, "How particles ask colliders")
       ->check(one_of(proxies::k_backend_names))
       ->capture_default_str();
-  command->add_option("--frames", options->frames, "Frames to run; the first 60 are not measured")
-      ->check(CLI::Range(k_first_measured + 1, 1000000))
+  command->add_option("--features", options->features, "What of the cloth meets colliders")
+      ->check(one_of(cloth::k_contact_features_names))
       ->capture_default_str();
-  command->add_flag("--still", options->still, "The dancer stands still");
+  command->add_option("--passes", options->passes, "Passes over the constraints, a substep (xpbd)")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  command->add_flag("--double", options->double_precision, "In double precision (xpbd)");
   command->add_option("--json", options->json, "Write the figures to this file");
-  command->callback([options, &status] { status = run(*options); });
+
+  const std::string group = k_dancer_skirt;
+  const std::vector<CLI::Option*> of_skirt = {
+      command->add_option("--n", options->n, "Particles along each side of the cloth")
+          ->check(CLI::Range(8, 1024))
+          ->capture_default_str()
+          ->group(group),
+      command->add_option("--frames", options->frames, "Frames to run; the first 60 are not measured")
+          ->check(CLI::Range(k_first_measured + 1, 1000000))
+          ->capture_default_str()
+          ->group(group),
+      command->add_flag("--still", options->still, "The dancer stands still")->group(group)};
+  const std::vector<CLI::Option*> of_others = {
+      command->add_option("--runs", options->runs, "Jittered starts of each variant")
+          ->check(CLI::Range(1, 1000))
+          ->capture_default_str()
+          ->group("scenes of stability"),
+      command->add_flag("--fixed-substeps", options->fixed_substeps, "Never more substeps than asked")
+          ->group("scenes of stability")};
+  command->callback([options, of_skirt, of_others, &status] {
+    refuse_foreign(options->name, of_skirt, of_others);
+    catch_interrupt();
+    status = options->name == k_dancer_skirt ? run_dancer_skirt(*options) : run_stability_family(*options);
+  });
 }
 
 } // namespace tutu::app

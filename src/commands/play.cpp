@@ -26,7 +26,7 @@ constexpr int k_most_frames = 10'000'000; // 46 hours of dance
 
 struct Options {
   SceneOptions scene;
-  bool headless = false, no_pictures = false;
+  bool headless = false, no_pictures = false, fixed_substeps = false;
   std::optional<int> frames;
   std::string out, json;
   std::vector<int> at;
@@ -150,6 +150,14 @@ private:
   int count_ = 0;
 };
 
+/// Each recovery that was kept, with the constraint that was bad first.
+void tell_recoveries(const SessionTroubles& troubles) {
+  for (const SessionRecovery& recovery : troubles.first_recoveries)
+    fmt::print(stderr, "note: {}\n", recovery.message());
+  const int more = troubles.recoveries - static_cast<int>(troubles.first_recoveries.size());
+  if (more > 0) fmt::print(stderr, "note: and {} recoveries more\n", more);
+}
+
 int play_headless(const Options& options, const Scene& scene, const std::vector<std::vector<Vec3>>& start) {
   Session session(scene);
   session.start(start);
@@ -178,6 +186,7 @@ int play_headless(const Options& options, const Scene& scene, const std::vector<
   fmt::print("{}", stats.text(session));
   if (!options.json.empty()) write_file(options.json, stats.json(session).dump(2) + "\n");
   if (!written.empty()) fmt::print("wrote {}\n", written);
+  tell_recoveries(session.troubles());
   if (diverged) fmt::print(stderr, "tutu: {}\n", session.failure()->message());
   if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", session.frame(), frames);
   return diverged || interrupted() ? k_not_met : k_ok;
@@ -187,7 +196,8 @@ int run(const Options& options) {
   const bool headless = options.headless || !options.json.empty() || !options.at.empty() || !display_available();
   check(options);
   if (headless) catch_interrupt();
-  const Scene scene = options.scene.load();
+  Scene scene = options.scene.load();
+  if (options.fixed_substeps) scene.description.adaptive_substeps = false;
   const auto start = draped_start(scene);
   if (!start) return k_not_met;
   if (headless) return play_headless(options, scene, *start);
@@ -227,6 +237,8 @@ void add_play(CLI::App& app, int& status) {
   command->add_option("--pitch", options->pitch_degrees, "Camera: degrees from above")
       ->check(finite_number())
       ->capture_default_str();
+  command->add_flag("--fixed-substeps", options->fixed_substeps,
+                    "Never more substeps than asked, however fast something moves");
   command->add_flag("--no-pictures", options->no_pictures, "Simulate only (with --headless or --json)");
   command->callback([options, &status] { status = run(*options); });
 }

@@ -25,10 +25,13 @@ CLI::Validator one_of(std::span<const std::string_view> names) {
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("scene", scene, "Scene file (.json); the shipped dance when left out");
   command.add_option("--substeps", substeps, "Substeps a frame, in place of the scene's")->check(CLI::Range(1, 10000));
+  command.add_option("--threads", threads, "Threads that step garments side by side, in place of the scene's")
+      ->check(CLI::Range(1, k_most_threads));
   command.add_option("--solver", solver, "How cloth is solved, in place of the scene's")
       ->check(one_of(cloth::k_solver_names));
   command.add_option("--backend", backend, "How particles ask colliders, in place of the scene's")
       ->check(one_of(proxies::k_backend_names));
+  command.add_flag("--self-collision", self_collision, "Each garment collides with itself too (solver xpbd)");
 }
 
 Scene SceneOptions::load() const {
@@ -36,8 +39,10 @@ Scene SceneOptions::load() const {
       scene.empty() ? assets_folder() / "scenes" / "dance.json" : std::filesystem::path(scene);
   SceneDescription description = read_scene(file);
   if (substeps) description.substeps = *substeps;
+  if (threads) description.threads = *threads;
   if (solver) description.solver = cloth::solver_named(*solver);
   if (backend) description.backend = proxies::backend_named(*backend);
+  description.self_collision = description.self_collision || self_collision;
   Scene loaded = load_scene(description);
   for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
   return loaded;

@@ -20,8 +20,9 @@ CLI::Validator one_of(std::span<const std::string_view> names);
 /// Options that change a scene's own settings.
 struct SceneOptions {
   std::string scene; ///< empty: the default scene
-  std::optional<int> substeps;
+  std::optional<int> substeps, threads;
   std::optional<std::string> backend, solver;
+  bool self_collision = false; ///< asked for, whatever the scene says
 
   void add_to(CLI::App& command);
   /// The scene file with these options applied; notes of the loading go to stderr.

@@ -63,9 +63,16 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
     for (const cloth::Seam& seam : garment.seams) add(seam.i, seam.j);
     const cloth::Fabric& f = garment.fabric;
     add(f.density, f.drag, f.contact_offset());
+    add(1e3 * f.bend, garment.pressed); // in mN m, above the rounding
   }
   for (const std::vector<int>& joints : scene.attachment_joints)
     for (const int joint : joints) add(joint);
+  for (const SkinPins& pins : scene.skin_pins)
+    for (const SkinPins::Binding& binding : pins.bindings) {
+      add(binding.pin, binding.triangle);
+      add_point(binding.weights);
+      add_point(binding.offset);
+    }
   const auto add_pose = [&](std::span<const Transform> pose) {
     for (const Transform& t : pose) {
       add_point(t.translation);
@@ -86,6 +93,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   const SceneDescription& d = scene.description;
   add(d.ground_height ? *d.ground_height : 0.0, d.ground_height ? 1.0 : 0.0);
   add(d.frames_per_second, d.substeps, d.solver == cloth::SolverKind::xpbd ? 1.0 : 0.0);
+  if (d.self_collision) add(1.0); // without it the hash stays that of drapes made before there was any
   return cloth::state_hash(numbers);
 }
 

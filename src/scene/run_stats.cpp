@@ -48,9 +48,9 @@ nlohmann::json RunStats::json(const Session& session) const {
                            {"frames", frames_},
                            {"seed", 0}, // nothing in a run is random
                            {"solver", name_of(scene_->description.solver)},
-                           {"substeps", scene_->description.substeps},
+                           {"substeps", substeps_json(session)},
                            {"backend", session.backend()},
-                           {"threads", 1},
+                           {"threads", session.threads()},
                            {"ms_per_frame", ms},
                            {"penetration_mm", {{"proxies", json_of(depths_mm_.spread())}}},
                            {"share_inside", static_cast<double>(inside_) /
@@ -58,9 +58,22 @@ nlohmann::json RunStats::json(const Session& session) const {
                            {"stretch", json_of(stretch())},
                            {"jitter", jitters_.spread().mean},
                            {"diverged", session.failure().has_value()},
-                           {"recoveries", 0},
+                           {"recoveries", session.troubles().recoveries},
+                           {"teleports", session.troubles().teleports},
                            {"state_hash", fmt::format("{:016x}", session.state_hash())}};
+  for (const SessionRecovery& recovery : session.troubles().first_recoveries)
+    result["first_recoveries"].push_back(recovery.message());
   if (session.failure()) result["failure"] = session.failure()->message();
+  return result;
+}
+
+nlohmann::json RunStats::substeps_json(const Session& session) const {
+  const int asked = scene_->description.substeps;
+  const SessionTroubles& troubles = session.troubles();
+  nlohmann::json result = {{"asked", asked},
+                           {"max", std::max(asked, troubles.worst_split.substeps)},
+                           {"frames_split", troubles.frames_split}};
+  if (troubles.frames_split > 0) result["reason"] = troubles.worst_split_reason;
   return result;
 }
 
@@ -87,6 +100,12 @@ std::string RunStats::text(const Session& session) const {
                       "jitter: {:.2f} m/s2\nstate hash {:016x}\n",
                       depth.max, depth.mean, 100 * stretch.max, 100 * stretch.p99, 100 * stretch.mean,
                       jitters_.spread().mean, session.state_hash());
+  const SessionTroubles& troubles = session.troubles();
+  if (troubles.frames_split > 0)
+    text += fmt::format("{} frames in more substeps than asked, at most {} in frame {} ({})\n", troubles.frames_split,
+                        troubles.worst_split.substeps, troubles.worst_split_frame, troubles.worst_split_reason);
+  if (troubles.teleports > 0) text += fmt::format("{} jumps of the body, garments carried along\n", troubles.teleports);
+  if (troubles.recoveries > 0) text += fmt::format("{} recoveries\n", troubles.recoveries);
   return text;
 }
 

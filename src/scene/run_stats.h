@@ -29,6 +29,7 @@ public:
 private:
   /// Largest and 99th percentile of the lengthening, mean of the change either way.
   cloth::Spread stretch() const;
+  nlohmann::json substeps_json(const Session& session) const;
   struct Stage {
     const char* name;
     std::vector<double> ms; ///< a frame each

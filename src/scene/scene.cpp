@@ -75,8 +75,13 @@ Scene load_scene(const SceneDescription& description) {
   for (const GarmentEntry& entry : description.garments) {
     cloth::Garment garment =
         cloth::build_garment(cloth::fitted(cloth::read_garment(entry.file), entry.scale, entry.offset));
+    SkinPins skin_pins = bind_to_skin(garment, scene.character);
     std::vector<int> joints;
     for (std::size_t a = 0; a < garment.attachments.size(); ++a) {
+      if (garment.attachments[a].skin) {
+        joints.push_back(main_joint(skin_pins, garment, static_cast<int>(a)));
+        continue;
+      }
       const std::string& name = garment.attachments[a].joint;
       const auto joint = skeleton.find(name);
       if (!joint)
@@ -85,6 +90,7 @@ Scene load_scene(const SceneDescription& description) {
       joints.push_back(*joint);
     }
     scene.attachment_joints.push_back(std::move(joints));
+    scene.skin_pins.push_back(std::move(skin_pins));
     scene.garments.push_back(std::move(garment));
   }
   return scene;

@@ -5,6 +5,7 @@
 #include "proxies/collider.h"
 #include "rig/character.h"
 #include "src/scene/scene_file.h"
+#include "src/scene/skin_pins.h"
 
 #include <string>
 #include <vector>
@@ -17,7 +18,8 @@ struct Scene {
   rig::Clip clip;
   std::vector<proxies::Proxy> proxies;
   std::vector<cloth::Garment> garments;
-  std::vector<std::vector<int>> attachment_joints; ///< [garment][attachment]: joint index
+  std::vector<std::vector<int>> attachment_joints; ///< [garment][attachment]: joint; of one on the skin, the main one
+  std::vector<SkinPins> skin_pins;                 ///< [garment]: of attachments on the skin
   std::vector<std::string> notes; ///< what the user should know: from the importer, the retargeting, units
 
   std::string name() const { return description.file.stem().string(); }

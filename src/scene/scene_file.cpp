@@ -93,16 +93,19 @@ SceneDescription read_scene(const fs::path& file) {
     }
   }
   if (const auto solver = json.find("solver")) {
-    solver->only_keys({"name", "substeps", "frames_per_second"});
+    solver->only_keys({"name", "substeps", "adaptive_substeps", "frames_per_second", "threads"});
     if (const auto name = solver->find("name"))
       scene.solver = cloth::solver_named(name->string_among(cloth::k_solver_names));
     if (const auto substeps = solver->find("substeps")) scene.substeps = substeps->integer_in(1, 10000);
+    if (const auto adaptive = solver->find("adaptive_substeps")) scene.adaptive_substeps = adaptive->boolean();
+    if (const auto threads = solver->find("threads")) scene.threads = threads->integer_in(1, k_most_threads);
     if (const auto rate = solver->find("frames_per_second")) scene.frames_per_second = rate->integer_in(1, 10000);
   }
   if (const auto collision = json.find("collision")) {
-    collision->only_keys({"backend"});
+    collision->only_keys({"backend", "self_collision"});
     if (const auto backend = collision->find("backend"))
       scene.backend = proxies::backend_named(backend->string_among(proxies::k_backend_names));
+    if (const auto self = collision->find("self_collision")) scene.self_collision = self->boolean();
   }
   if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);
   else scene.drape = fs::path(file).replace_extension(".drape.json");

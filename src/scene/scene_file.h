@@ -24,6 +24,8 @@ struct OwnMotion {
 };
 using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts>;
 
+inline constexpr int k_most_threads = 256;
+
 struct GarmentEntry {
   std::filesystem::path file;
   Vec3 scale = Vec3::Ones();  ///< per axis, about the model's origin
@@ -41,8 +43,11 @@ struct SceneDescription {
   std::optional<double> ground_height = 0.0; ///< m; none = no ground
   int frames_per_second = 60;
   cloth::SolverKind solver = cloth::SolverKind::xpbd;
-  int substeps = 10; ///< a frame
-  proxies::Backend backend = proxies::Backend::fcl;
+  int substeps = 10;             ///< a frame,
+  bool adaptive_substeps = true; ///< and more where something moves too fast for them
+  int threads = 1;               ///< that step garments side by side; never more than there are garments
+  proxies::Backend backend = proxies::Backend::hybrid;
+  bool self_collision = false; ///< of each garment with itself; solver xpbd only
   std::filesystem::path drape; ///< where the settled garments are kept
 };
 

@@ -40,12 +40,29 @@ void add_proxies(const Session& session, FrameView& view) {
   }
 }
 
+/// Unit; +Y where there is no area.
+void area_weighted_normals(const std::vector<Vec3f>& positions, std::span<const rig::Triangle> triangles,
+                           std::vector<Vec3f>& normals) {
+  normals.assign(positions.size(), Vec3f::Zero());
+  for (const rig::Triangle& t : triangles) {
+    const Vec3f normal = (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]);
+    for (const std::uint32_t corner : t) normals[corner] += normal;
+  }
+  for (Vec3f& normal : normals) {
+    const float length = normal.norm();
+    normal = length > 0.0f ? Vec3f(normal / length) : Vec3f::UnitY();
+  }
+}
+
 } // namespace
 
 SceneView::SceneView(const Scene& scene) {
   constexpr int k_refinement = 3; // cells a cell each way: a skirt of 30 x 30 looks woven, not folded from paper
-  for (const cloth::Garment& garment : scene.garments) // flipped: a garment's rows run down, its front is outside
-    cloth_.emplace_back(GridShape{garment.rows, garment.columns, garment.woven_shut}, k_refinement, true);
+  for (const cloth::Garment& garment : scene.garments) {
+    Sheet& sheet = cloth_.emplace_back();
+    if (garment.rows > 0) // flipped: a garment's rows run down, its front is outside
+      sheet.grid.emplace(GridShape{garment.rows, garment.columns, garment.woven_shut}, k_refinement, true);
+  }
 }
 
 FrameView SceneView::frame(const Session& session, const Layers& layers) {
@@ -57,13 +74,21 @@ FrameView SceneView::frame(const Session& session, const Layers& layers) {
     const cloth::Garment& garment = session.scene().garments[g];
     const std::vector<Vec3>& particles = session.garment(static_cast<int>(g)).particles().positions;
     if (layers.cloth) {
-      particles_.clear();
-      for (const Vec3& p : particles) particles_.push_back(p.cast<float>());
-      cloth_[g].update(particles_);
+      Sheet& sheet = cloth_[g];
+      sheet.particles.clear();
+      for (const Vec3& p : particles) sheet.particles.push_back(p.cast<float>());
       SurfaceView surface;
-      surface.positions = cloth_[g].positions();
-      surface.normals = cloth_[g].normals();
-      surface.triangles = cloth_[g].triangles();
+      if (sheet.grid) {
+        sheet.grid->update(sheet.particles);
+        surface.positions = sheet.grid->positions();
+        surface.normals = sheet.grid->normals();
+        surface.triangles = sheet.grid->triangles();
+      } else {
+        area_weighted_normals(sheet.particles, garment.triangles, sheet.normals);
+        surface.positions = sheet.particles;
+        surface.normals = sheet.normals;
+        surface.triangles = garment.triangles;
+      }
       surface.colour = garment.colour;
       surface.wireframe = layers.wireframe;
       surface.two_sided = true;

@@ -6,6 +6,8 @@
 #include "src/scene/session.h"
 #include "src/viewer/player.h"
 
+#include <optional>
+
 namespace tutu::app {
 
 /// Owns what drawing needs beside the session. Reads the session, never changes it.
@@ -18,8 +20,14 @@ public:
   FrameView frame(const Session& session, const Layers& layers);
 
 private:
-  std::vector<SmoothGrid> cloth_; ///< what is drawn is finer than what is simulated, and goes through every particle
-  std::vector<Vec3f> particles_;
+  /// A garment as it is drawn. What is woven in rows and columns is drawn finer than it is simulated, through every
+  /// particle; of any other the triangles themselves.
+  struct Sheet {
+    std::optional<SmoothGrid> grid;
+    std::vector<Vec3f> particles, normals; ///< normals: without a grid only
+  };
+
+  std::vector<Sheet> cloth_;
 };
 
 /// Points (m) around all places the scene's joints go to over the whole clip, with room for flesh and cloth: what a

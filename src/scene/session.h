@@ -1,12 +1,14 @@
 // A scene in motion: poses the body, follows it with colliders and pins, moves the garments, one frame at a time.
 #pragma once
 
-#include "cloth/solver.h"
+#include "cloth/adaptive_substeps.h"
+#include "cloth/recovery.h"
 #include "proxies/collider_set.h"
 #include "src/scene/scene.h"
 
 #include <functional>
 #include <memory>
+#include <oneapi/tbb/task_arena.h>
 #include <optional>
 #include <string>
 #include <vector>
@@ -27,13 +29,43 @@ struct SessionFailure {
   std::string garment;
   cloth::Divergence divergence;
   int frame = 0;
-  double time = 0.0; ///< s, of the substep
+  double time = 0.0;     ///< s, of the substep
+  int tries = 0;         ///< to take the frame again, all in vain,
+  int last_substeps = 0; ///< the last with so many substeps a frame
 
-  /// One sentence: garment, frame, time, particle, position, stretch, strongest force.
+  /// One sentence: garment, frame, time, particle, position, stretch, strongest force, tries.
   std::string message() const;
 };
 
-/// The scene must outlive it. Drawing reads from it and never changes it.
+/// A frame that diverged and was carried after all.
+struct SessionRecovery {
+  std::string garment;
+  cloth::Recovery recovery;
+  int frame = 0;
+  double time = 0.0; ///< s, of the substep that was bad first
+
+  std::string message() const; ///< one sentence, with the first bad constraint
+};
+
+/// What a session had to do beyond taking each frame as asked, since start().
+struct SessionTroubles {
+  int recoveries = 0;                            ///< frames of a garment
+  std::vector<SessionRecovery> first_recoveries; ///< the first k_kept of them
+  int teleports = 0;                             ///< frames that were taken for a jump
+  int frames_split = 0;                          ///< into more substeps than asked
+  cloth::SubstepPlan worst_split;                ///< of the frame with the most substeps, and
+  int worst_split_frame = 0;                     ///< that frame,
+  std::string worst_split_reason;                ///< in words
+
+  static constexpr std::size_t k_kept = 16;
+};
+
+/// m/s. A joint that holds a garment and is faster than this has jumped: a cut in the clip, not a motion. Twice the
+/// fastest kick of a human, and slow enough that adaptive substeps still follow what is below it.
+inline constexpr double k_teleport_speed = 60.0;
+
+/// The scene must outlive it. Drawing reads from it and never changes it. Garments do not meet each other, so that a
+/// frame's may be stepped side by side; whatever the number of threads, the bits are the same.
 class Session {
 public:
   explicit Session(const Scene& scene);
@@ -45,7 +77,8 @@ public:
   /// holds it and is at rest, so that the jump is never seen as a velocity. After a failure the start is carried there.
   void jump(double time);
 
-  /// One frame of the clip. Does nothing once it has failed.
+  /// One frame of the clip. Does nothing once it has failed. Where the joints that hold garments jump (a cut in the
+  /// clip), garments are carried along as in jump().
   void advance();
 
   /// One frame towards a given pose (parent_from_joint), with more drag (1/s): how garments are draped.
@@ -59,33 +92,59 @@ public:
   double frame_seconds() const { return 1.0 / scene_->description.frames_per_second; }
   double time() const { return start_time_ + frame_ * frame_seconds(); } ///< s since the clip's start
   const std::optional<SessionFailure>& failure() const { return failure_; }
+  const SessionTroubles& troubles() const { return troubles_; }
   const FrameTimes& times() const { return times_; }
   std::span<const Transform> world_from_joint() const { return world_; }
   const proxies::ColliderSet& colliders() const { return colliders_; }
-  const cloth::Solver& garment(int g) const { return *garments_[g]; } ///< in the order of Scene::garments
+  const cloth::Solver& garment(int g) const { return garments_[g]; } ///< in the order of Scene::garments
   std::span<const Vec3f> body_positions() const { return body_positions_; }
   std::span<const Vec3f> body_normals() const { return body_normals_; }
-  std::string_view backend() const { return query_->name(); }
+  std::string_view backend() const {
+    return proxies::k_backend_names[static_cast<std::size_t>(scene_->description.backend)];
+  }
+  int threads() const { return threads_; }
   std::uint64_t state_hash() const;
 
 private:
   void pose_at(double time);
-  void place_pins(std::vector<std::vector<Vec3>>& targets) const;
+  void place_pins(std::vector<std::vector<Vec3>>& targets);
+  /// The joint that carries a garment along when there is a jump.
+  int holding_joint(std::size_t g) const;
+  bool has_jumped() const;
+  /// All garments rigidly from where their joints were to where they are, at rest.
+  void carry_along(std::span<const Transform> before);
+  void advance_garments(double extra_drag);
+  /// What one garment takes from a frame; touches nothing of another's.
+  struct GarmentFrame {
+    cloth::SubstepPlan plan;
+    double planning = 0.0; ///< ms
+    std::optional<cloth::Divergence> divergence;
+  };
+  void advance_garment(std::size_t g, double extra_drag);
+  void note_garment(std::size_t g);
+  void note_split(std::size_t g, const cloth::SubstepPlan& plan);
 
   const Scene* scene_;
   std::vector<Transform> local_, world_;
   std::vector<Transform> rest_inverse_; ///< joint_from_model at rest
   proxies::ColliderSet colliders_;
-  std::unique_ptr<proxies::CollisionQuery> query_;
-  std::vector<std::unique_ptr<cloth::Solver>> garments_;
+  std::vector<std::unique_ptr<proxies::CollisionQuery>> queries_; ///< [garment]: one serves one thread
+  std::vector<cloth::GuardedSolver> garments_;
+  std::vector<GarmentFrame> garment_frames_; ///< [garment], the last
+  int threads_ = 1;
+  std::unique_ptr<tbb::task_arena> arena_;         ///< of that many threads; none for one
   std::vector<double> friction_;                   ///< of each collider, the ground last
   std::vector<std::vector<Vec3>> start_positions_; ///< of start(), and the joints then
   std::vector<Transform> start_world_;
+  std::vector<Transform> world_before_;                  ///< at the frame's start
   std::vector<std::vector<Vec3>> pins_start_, pins_end_; ///< [garment][pin], world, m
+  std::vector<SkinPinScratch> skin_pin_scratch_;         ///< [garment]
   std::vector<rig::SkinMatrix> palette_;
   std::vector<Vec3f> body_positions_, body_normals_;
   FrameTimes times_;
   std::optional<SessionFailure> failure_;
+  SessionTroubles troubles_;
+  bool frame_is_split_ = false;
   double start_time_ = 0.0;
   int frame_ = 0;
 };

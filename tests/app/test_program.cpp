@@ -136,19 +136,42 @@ TEST_F(Program, CharactersThatCannotBe) {
 }
 
 TEST_F(Program, DivergenceIsStatus1WithItsPlaceAndLeavesNoFilm_slow) {
-  // Five substeps a frame cannot carry cloth this stiff.
+  // Neither five substeps a frame nor 64 times as many carry cloth this stiff.
   file(
       "stiff.json",
       R"({"name": "stiff", "shape": {"tube": {"rows": 12, "columns": 16, "rings": [{"height": 1.05, "radius": 0.2}, {"height": 0.6, "radius": 0.3}]}},
-    "fabric": {"stretch": 20000}, "attachments": [{"joint": "Hips", "rows": 0}]})");
-  const Outcome outcome =
-      run_program({"play", scene(", \"garments\": [\"stiff.json\"], \"solver\": {\"name\": \"mass_spring\", \"substeps\": 5}"), "--headless", "-o",
-                   (folder_ / "film.mp4").string(), "--json", (folder_ / "stats.json").string()});
+    "fabric": {"stretch": 9e8}, "attachments": [{"joint": "Hips", "rows": 0}]})");
+  const Outcome outcome = run_program(
+      {"play", scene(", \"garments\": [\"stiff.json\"], \"solver\": {\"name\": \"mass_spring\", \"substeps\": 5}"),
+       "--headless", "-o", (folder_ / "film.mp4").string(), "--json", (folder_ / "stats.json").string()});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_THAT(outcome.output,
-              AllOf(HasSubstr("stiff diverged in frame"), HasSubstr("particle"), HasSubstr("largest force")));
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("stiff diverged in frame"), HasSubstr("particle"),
+                                    HasSubstr("largest force"), HasSubstr("7 tries")));
   for (const auto& entry : std::filesystem::directory_iterator(folder_))
     EXPECT_EQ(entry.path().extension(), ".json") << entry.path();
+}
+
+TEST_F(Program, RecoveriesAreCountedAndToldWithTheirPlace_slow) {
+  file(
+      "stiff.json",
+      R"({"name": "stiff", "shape": {"tube": {"rows": 12, "columns": 16, "rings": [{"height": 1.05, "radius": 0.2}, {"height": 0.6, "radius": 0.3}]}},
+    "fabric": {"stretch": 2000}, "attachments": [{"joint": "Hips", "rows": 0}]})");
+  const std::string s = scene(", \"garments\": [\"stiff.json\"], \"solver\": {\"name\": \"mass_spring\", \"substeps\": "
+                              "5, \"adaptive_substeps\": false}");
+  std::string hashes[2];
+  for (std::string& hash : hashes) {
+    const Outcome outcome =
+        run_program({"play", s, "--no-pictures", "--frames", "60", "--json", (folder_ / "stats.json").string()});
+    ASSERT_EQ(outcome.status, 0) << outcome.output;
+    EXPECT_THAT(outcome.output, AllOf(HasSubstr("stiff recovered in frame"), HasSubstr("an edge at particle")));
+    const nlohmann::json stats = nlohmann::json::parse(read_file(folder_ / "stats.json"));
+    EXPECT_GT(stats.at("recoveries"), 0);
+    EXPECT_EQ(stats.at("diverged"), false);
+    EXPECT_LT(stats.at("stretch").at("p99"), 0.1);
+    EXPECT_THAT(stats.at("first_recoveries").at(0).get<std::string>(), HasSubstr("of 5"));
+    hash = stats.at("state_hash").get<std::string>();
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
 }
 
 TEST_F(Program, TheJumpingHumanJumpsInHisSkirt_slow) {
@@ -202,6 +225,10 @@ TEST_F(Program, TheDanceRunsAndReports_slow) {
   EXPECT_EQ(stats.at("frames"), 60);
   EXPECT_EQ(stats.at("diverged"), false);
   EXPECT_EQ(stats.at("recoveries"), 0);
+  EXPECT_EQ(stats.at("teleports"), 0);
+  EXPECT_EQ(stats.at("substeps").at("asked"), 12);
+  EXPECT_GE(stats.at("substeps").at("max"), 12);
+  EXPECT_GE(stats.at("substeps").at("frames_split"), 0);
   for (const char* stage : {"pose", "proxies", "broad", "cloth", "contact", "skin", "total"})
     EXPECT_GT(stats.at("ms_per_frame").at(stage).at("median").get<double>(), 0.0) << stage;
   // The same run gives the same bits.

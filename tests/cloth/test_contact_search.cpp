@@ -42,7 +42,7 @@ TEST(ContactSearch, IsThePlainSearchToTheBit) {
   std::uniform_real_distribution<double> place(-0.7, 0.7), speed(-2, 2);
   const double offset = 0.002, seconds = 1.0 / 60.0;
   const int substeps = 10;
-  for (const proxies::Backend backend : {proxies::Backend::brute, proxies::Backend::fcl}) {
+  for (const proxies::Backend backend : {proxies::Backend::brute, proxies::Backend::hybrid, proxies::Backend::fcl}) {
     const auto query = proxies::make_query(backend);
     std::int64_t contacts = 0, queries = 0;
     for (int trial = 0; trial < 20; ++trial) {
@@ -73,7 +73,7 @@ TEST(ContactSearch, IsThePlainSearchToTheBit) {
         respond_plainly(placed, offset, plain);
       }
       for (int i = 0; i < 300; ++i) {
-        if (backend == proxies::Backend::brute) {
+        if (backend != proxies::Backend::fcl) {
           ASSERT_EQ(fast.positions[i], plain.positions[i]) << "trial " << trial << " particle " << i;
           ASSERT_EQ(fast.velocities[i], plain.velocities[i]);
         } else {
@@ -120,6 +120,22 @@ TEST(ContactSearch, PinnedParticlesAreLeftAlone) {
   respond(search, *query, 1.0, std::vector<std::uint8_t>{1}, particles);
   EXPECT_EQ(particles.positions[0], Vec3(0.05, 0, 0));
   EXPECT_EQ(particles.velocities[0], Vec3(1, 2, 3));
+}
+
+TEST(ContactSearch, ASpinningSurfaceMovesByItsShareOfTheFrame) {
+  const auto query = proxies::make_query(proxies::Backend::brute);
+  const std::vector<proxies::Capsule> colliders = {{Vec3::Zero(), Vec3::Zero(), 0.1}};
+  const std::vector<Vec3> spin = {Vec3(0.02, 0, 0)};
+  Particles particles;
+  particles.positions = {{0, 0.1, 0}};
+  particles.velocities = {Vec3::Zero()};
+  ContactSearch search(0.0);
+  search.begin_frame(*query, {colliders, colliders, std::nullopt, spin}, particles, 1.0 / 60);
+  for (const double s : {0.25, 1.0}) {
+    respond(search, *query, s, std::vector<std::uint8_t>{0}, particles);
+    const double part = s == 0.25 ? 0.25 : 0.75;
+    EXPECT_LT((search.surface_motion(0, Vec3(0, 0.1, 0)) - Vec3(0, 0, part * 0.02 * 0.1)).norm(), 1e-18);
+  }
 }
 
 TEST(ContactSearch, TheGroundHoldsEvenWhatFallsFromFarAway) {

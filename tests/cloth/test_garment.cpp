@@ -153,6 +153,59 @@ TEST_F(GarmentFile, ReadsATube) {
   EXPECT_EQ(message_for(text), "");
 }
 
+TEST_F(GarmentFile, AFabricIsNamedOrWrittenOutOrBoth) {
+  std::filesystem::create_directories(folder_ / "garments");
+  std::filesystem::create_directories(folder_ / "fabrics");
+  write_file(folder_ / "fabrics/felt.json", R"({"source": "made up", "density": 0.5, "bend": 1e-4, "shear": 7})");
+  write_file(folder_ / "garments/local.json", R"({"density": 0.3})");
+  const auto fabric_of = [&](const std::string& fabric) {
+    write_file(folder_ / "garments/g.json",
+               R"({"shape": {"grid": {"rows": 3, "columns": 3, "corner": [0,0,0], "across": [1,0,0], "down": [0,-1,0]}},
+                  "fabric": )" +
+                   fabric + "}");
+    return read_garment(folder_ / "garments/g.json").fabric;
+  };
+  const Fabric felt = fabric_of("\"felt\"");
+  EXPECT_EQ(felt.density, 0.5);
+  EXPECT_EQ(felt.bend, 1e-4);
+  EXPECT_EQ(felt.bend_springs, Fabric{}.bend_springs);
+  EXPECT_EQ(fabric_of("\"local.json\"").density, 0.3);
+  const Fabric changed = fabric_of(R"({"base": "felt", "density": 0.4, "bend_springs": 3})");
+  EXPECT_EQ(changed.density, 0.4);
+  EXPECT_EQ(changed.shear, 7.0);
+  EXPECT_EQ(changed.bend_springs, 3.0);
+  const auto refused = [&](const std::string& fabric) -> std::string {
+    try {
+      fabric_of(fabric);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using ::testing::HasSubstr;
+  EXPECT_THAT(refused("\"flet\""), HasSubstr("/fabric: found \"flet\", expected one of: felt"));
+  EXPECT_THAT(refused(R"({"base": "flet"})"), HasSubstr("/fabric/base"));
+  EXPECT_THAT(refused("\"nowhere.json\""), HasSubstr("no file"));
+  EXPECT_THAT(refused("\"../felt\""), HasSubstr("the name of a fabric"));
+  EXPECT_THAT(refused("3"), HasSubstr("/fabric: found 3"));
+}
+
+TEST_F(GarmentFile, TheShippedFabricsOrderAsTheyShould) {
+  const auto shipped = [&](const std::string& name) {
+    write_file(folder_ / "g.json", R"({"shape": {"grid": {"rows": 3, "columns": 3, "corner": [0,0,0], "across": [1,0,0],
+                                   "down": [0,-1,0]}}, "fabric": ")" +
+                                       test::source_file("assets/fabrics/" + name + ".json").string() + "\"}");
+    return read_garment(folder_ / "g.json").fabric;
+  };
+  const Fabric silk = shipped("silk"), cotton = shipped("cotton"), wool = shipped("wool"), denim = shipped("denim");
+  EXPECT_LT(silk.density, cotton.density);
+  EXPECT_LT(cotton.density, wool.density);
+  EXPECT_LT(wool.density, denim.density);
+  EXPECT_LT(silk.bend, cotton.bend);
+  EXPECT_LT(cotton.bend, wool.bend);
+  EXPECT_LT(wool.bend, denim.bend);
+}
+
 TEST_F(GarmentFile, EveryMistakeIsNamedWithItsPlace) {
   using ::testing::HasSubstr;
   const auto with_shape = [](const std::string& shape) { return "{\"shape\": " + shape + "}"; };

@@ -1,4 +1,4 @@
-"""Every JSON asset names a schema that exists, and keeps to it; every schema is one itself."""
+"""Every JSON asset names a schema that exists, and keeps to it; so does the fabric it names. Every schema is one itself."""
 import json
 import pathlib
 import sys
@@ -21,6 +21,12 @@ for file in sorted(assets.rglob("*.json")):
     schema = json.loads((file.parent / document["$schema"]).read_text())
     for error in jsonschema.Draft7Validator(schema).iter_errors(document):
         failures.append(f"{file}: {'/'.join(map(str, error.absolute_path))}: {error.message}")
+    fabric = document.get("fabric")
+    named = fabric.get("base") if isinstance(fabric, dict) else fabric
+    if named:
+        path = file.parent / named if named.endswith(".json") else file.parent.parent / "fabrics" / f"{named}.json"
+        if not path.exists():
+            failures.append(f"{file}: fabric: no file {path}")
     checked += 1
 print(*failures, f"{checked} files checked", sep="\n")
 sys.exit(bool(failures) or checked == 0)

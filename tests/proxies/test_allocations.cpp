@@ -28,21 +28,25 @@ using namespace tutu;
 using namespace tutu::proxies;
 
 TEST(Allocations, NoneInTheFrameLoopOfAnyBackend) {
-  for (const Backend backend : {Backend::fcl, Backend::brute}) {
+  for (const Backend backend : {Backend::fcl, Backend::hybrid, Backend::brute}) {
     test::ColliderScene scene = test::dancer_scene(900);
     const auto query = make_query(backend);
-    Candidates candidates;
+    Candidates candidates, for_boxes;
+    std::vector<Box> boxes;
+    for (const Vec3& point : scene.points) boxes.emplace_back(point.array() - 0.05, point.array() + 0.05);
     double sum = 0.0;
     const auto frame = [&](double sway) {
       for (Vec3& point : scene.points) point.x() += sway;
       for (Capsule& capsule : scene.end) capsule.b.z() += sway;
       query->find_candidates(scene.swept(), scene.points, 0.03, candidates);
+      query->find_for_boxes(scene.swept(), boxes, for_boxes);
       query->place(scene.end, scene.ground);
       for (int p = 0; p < 900; ++p)
         for (const int c : candidates.of(p)) sum += query->contact(scene.points[p], c).distance;
     };
     for (int i = 0; i < 20; ++i) frame(i % 2 ? 0.02 : -0.02);
-    candidates.colliders.reserve(900 * (test::k_body_colliders + 1)); // more than ever needed: growth is not at issue
+    for (Candidates* found : {&candidates, &for_boxes})
+      found->colliders.reserve(901 * (test::k_body_colliders + 1)); // more than ever needed: growth is not at issue
     const long before = allocations;
     for (int i = 0; i < 100; ++i) frame(i % 2 ? 0.01 : -0.01);
     EXPECT_EQ(allocations - before, 0) << query->name();

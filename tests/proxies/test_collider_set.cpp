@@ -84,6 +84,36 @@ TEST(ColliderSet, AdvancesFromPoseToPose) {
   EXPECT_EQ(set.swept().start[1].a, first[0] * Vec3(0.1, 0.2, 0.3));
 }
 
+TEST(ColliderSet, SpinIsTheTurnOfTheJointThatCarriesMost) {
+  std::mt19937_64 random(6);
+  std::vector<Proxy> proxies = three_proxies();
+  proxies[0].a.count = 2; // mostly on joint 1
+  proxies[0].a.joints = {0, 1};
+  proxies[0].a.weights = {0.3, 0.7};
+  ColliderSet set(proxies, std::nullopt);
+  std::vector<Transform> joints = random_joints(random, 2);
+  set.reset(joints);
+  EXPECT_EQ(set.swept().spin.size(), 2u);
+  EXPECT_EQ(set.swept().spin[0], Vec3::Zero());
+  set.advance(joints);
+  for (const Vec3& spin : set.swept().spin) EXPECT_EQ(spin, Vec3::Zero()) << "to the bit";
+  for (int frame = 0; frame < 200; ++frame) {
+    const std::vector<Transform> before = joints;
+    std::uniform_real_distribution<double> angle(0.0, 3.1);
+    const Vec3 axes[2] = {random_point(random, 1.0).normalized(), random_point(random, 1.0).normalized()};
+    const double angles[2] = {angle(random), 1e-6 * angle(random)};
+    for (int j = 0; j < 2; ++j) {
+      joints[j].rotation = Quat(Eigen::AngleAxisd(angles[j], axes[j])) * joints[j].rotation;
+      if (frame % 2) joints[j].rotation.coeffs() *= -1.0; // the same rotation
+    }
+    set.advance(joints);
+    EXPECT_LE((set.swept().spin[0] - angles[1] * axes[1]).norm(), 1e-14); // the ball
+    EXPECT_LE((set.swept().spin[1] - angles[0] * axes[0]).norm(), 1e-12); // the limb
+  }
+  set.reset(random_joints(random, 2));
+  for (const Vec3& spin : set.swept().spin) EXPECT_EQ(spin, Vec3::Zero());
+}
+
 TEST(ColliderSet, EndsOfTheFrameAreExact) {
   std::mt19937_64 random(4);
   ColliderSet set(three_proxies(), std::nullopt);
@@ -96,7 +126,8 @@ TEST(ColliderSet, EndsOfTheFrameAreExact) {
     colliders_at(set.swept(), 1.0, now);
     for (int i = 0; i < set.size(); ++i) EXPECT_TRUE(same(now[i], set.swept().end[i]));
     colliders_at(set.swept(), 0.25, now);
-    EXPECT_LE((now[1].a - (0.75 * set.swept().start[1].a + 0.25 * set.swept().end[1].a)).norm(), 1e-15);
+    EXPECT_LE((now[0].a - (0.75 * set.swept().start[0].a + 0.25 * set.swept().end[0].a)).norm(), 1e-15);
+    EXPECT_TRUE(same(now[1], capsule_at(set.swept().start[1], set.swept().end[1], 0.25)));
   }
 }
 

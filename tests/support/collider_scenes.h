@@ -24,8 +24,7 @@ struct ColliderScene {
   proxies::SweptColliders swept() const { return {start, end, ground}; }
   std::vector<proxies::Capsule> at(double s) const {
     std::vector<proxies::Capsule> now;
-    for (std::size_t i = 0; i < start.size(); ++i)
-      now.push_back({(1 - s) * start[i].a + s * end[i].a, (1 - s) * start[i].b + s * end[i].b, start[i].radius});
+    for (std::size_t i = 0; i < start.size(); ++i) now.push_back(proxies::capsule_at(start[i], end[i], s));
     return now;
   }
 };

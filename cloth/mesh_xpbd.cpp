@@ -1,0 +1,183 @@
+#include "cloth/mesh_xpbd.h"
+
+#include "cloth/colouring.h"
+#include "cloth/dihedral.h"
+#include "cloth/solver_parts.h"
+
+#include <cmath>
+
+namespace tutu::cloth {
+
+constexpr double k_tether_give = 0.02; // of the length: less would hold threads that a finer substep would not stretch
+constexpr double k_tether_load = 3.0 * 9.81; // m/s2: a dancer's turn takes cloth to about 2 g on top of its weight
+
+template <class Scalar>
+MeshXpbd<Scalar>::MeshXpbd(const Garment& garment)
+    : garment_(&garment), pinned_(pinned_flags(garment)), x_(garment.rest_positions.size()),
+      predicted_(garment.rest_positions.size()), contacts_(garment.fabric.contact_offset()) {
+  for (int i = 0; i < garment.particle_count(); ++i)
+    inverse_masses_.push_back(pinned_[i] ? Scalar(0) : static_cast<Scalar>(1.0 / garment.masses[i]));
+  add_stretches();
+  add_hinges();
+  add_ropes();
+  reset(garment.rest_positions);
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::add_stretches() {
+  std::vector<const Spring*> springs;
+  std::vector<int> ends;
+  for (const Spring& spring : garment_->springs) {
+    if (spring.kind == SpringKind::bend || (pinned_[spring.i] && pinned_[spring.j])) continue;
+    springs.push_back(&spring);
+    ends.insert(ends.end(), {spring.i, spring.j});
+  }
+  for (const int e : colour(ends, 2, garment_->particle_count()).order)
+    stretches_.push_back({springs[e]->i, springs[e]->j, static_cast<Scalar>(springs[e]->rest_length),
+                          static_cast<Scalar>(1.0 / springs[e]->stiffness)});
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::add_hinges() {
+  std::vector<Bend> bends = build_bends(*garment_);
+  std::erase_if(bends, [&](const Bend& b) { return pinned_[b.a] && pinned_[b.b] && pinned_[b.c] && pinned_[b.d]; });
+  std::vector<int> corners;
+  for (const Bend& bend : bends) corners.insert(corners.end(), {bend.a, bend.b, bend.c, bend.d});
+  for (const int e : colour(corners, 4, garment_->particle_count()).order)
+    hinges_.push_back({bends[e].a, bends[e].b, bends[e].c, bends[e].d, static_cast<Scalar>(bends[e].rest_angle),
+                       static_cast<Scalar>(1.0 / bends[e].stiffness)});
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::add_ropes() {
+  const double strain = k_tether_load * garment_->fabric.density / garment_->fabric.stretch; // a metre of cloth, 1/m
+  for (const Tether& tether : build_tethers(*garment_))
+    ropes_.push_back({tether.particle, tether.anchor,
+                      static_cast<Scalar>(tether.length * (1.0 + k_tether_give + strain * tether.length))});
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::reset(std::span<const Vec3> positions) {
+  particles_.positions.assign(positions.begin(), positions.end());
+  particles_.velocities.assign(positions.size(), Vec3::Zero());
+  before_ = particles_.positions;
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::restore(const Particles& state) {
+  particles_ = state;
+  before_ = state.positions;
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::predict(const FrameInput& input, double s, double h) {
+  const double kept = 1.0 / (1.0 + h * (garment_->fabric.drag + input.extra_drag));
+  before_ = particles_.positions;
+  for (int i = 0; i < particles_.count(); ++i) {
+    if (pinned_[i]) continue;
+    particles_.velocities[i] = kept * (particles_.velocities[i] + h * input.gravity);
+    particles_.positions[i] += h * particles_.velocities[i];
+  }
+  follow_pins(*garment_, input, s, h, particles_);
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::solve(Stretch& stretch, Scalar per_h2) {
+  const Scalar wi = inverse_masses_[stretch.i], wj = inverse_masses_[stretch.j];
+  const Vector d = x_[stretch.j] - x_[stretch.i];
+  const Scalar length = d.norm();
+  if (!(length > 0)) return; // two particles in one place: no direction
+  const Scalar compliance = stretch.compliance * per_h2;
+  const Scalar step = (stretch.rest_length - length - compliance * stretch.multiplier) / (wi + wj + compliance);
+  stretch.multiplier += step;
+  const Vector pull = (step / length) * d;
+  x_[stretch.i] -= wi * pull;
+  x_[stretch.j] += wj * pull;
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::solve(const Hinge& hinge, Scalar per_h2) {
+  const auto bent = dihedral<Scalar>(x_[hinge.a], x_[hinge.b], x_[hinge.c], x_[hinge.d]);
+  const Scalar wa = inverse_masses_[hinge.a], wb = inverse_masses_[hinge.b];
+  const Scalar wc = inverse_masses_[hinge.c], wd = inverse_masses_[hinge.d];
+  const Scalar give = wa * bent.at_a.squaredNorm() + wb * bent.at_b.squaredNorm() + wc * bent.at_c.squaredNorm() +
+                      wd * bent.at_d.squaredNorm();
+  const Scalar step = (hinge.rest_angle - bent.angle) / (give + hinge.compliance * per_h2); // once a substep: lambda 0
+  x_[hinge.a] += (wa * step) * bent.at_a;
+  x_[hinge.b] += (wb * step) * bent.at_b;
+  x_[hinge.c] += (wc * step) * bent.at_c;
+  x_[hinge.d] += (wd * step) * bent.at_d;
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::solve(const Rope& rope) {
+  const Vector d = x_[rope.particle] - x_[rope.anchor];
+  const Scalar length = d.norm();
+  if (length > rope.length) x_[rope.particle] -= (1 - rope.length / length) * d;
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::solve_constraints(double h, bool up_first) {
+  // From the garment itself rather than from the world's origin: floats are finest near 0. What comes back is the
+  // constraints' displacement, so that rounding touches nothing else.
+  const Vec3 origin = particles_.positions.front();
+  for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = (particles_.positions[i] - origin).template cast<Scalar>();
+  predicted_ = x_;
+
+  const auto per_h2 = static_cast<Scalar>(1.0 / (h * h));
+  for (Stretch& stretch : stretches_) stretch.multiplier = 0;
+  const auto up = [&] {
+    for (Stretch& stretch : stretches_) solve(stretch, per_h2);
+  };
+  const auto down = [&] {
+    for (auto stretch = stretches_.rbegin(); stretch != stretches_.rend(); ++stretch) solve(*stretch, per_h2);
+  };
+  if (up_first) up();
+  else down();
+  for (const Hinge& hinge : hinges_) solve(hinge, per_h2);
+  if (up_first) down();
+  else up();
+  for (const Rope& rope : ropes_) solve(rope);
+
+  for (std::size_t i = 0; i < x_.size(); ++i)
+    if (!pinned_[i]) particles_.positions[i] += (x_[i] - predicted_[i]).template cast<double>();
+}
+
+template <class Scalar> std::optional<Divergence> MeshXpbd<Scalar>::check(int substep) const {
+  for (int k = 0; k < garment_->structural_count; ++k) {
+    const Spring& spring = garment_->springs[k];
+    const double length = (particles_.positions[spring.j] - particles_.positions[spring.i]).norm();
+    if (length <= (1.0 + k_diverged_stretch) * spring.rest_length) continue; // false for a length that is no number
+    return find_divergence(*garment_, substep, particles_.positions);
+  }
+  return std::nullopt;
+}
+
+template <class Scalar>
+std::optional<Divergence> MeshXpbd<Scalar>::step(const FrameInput& input, proxies::CollisionQuery& query) {
+  times_ = {};
+  auto time = Clock::now();
+  contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
+  time = lap(time, times_.broad);
+  const double h = input.seconds / input.substeps;
+  const auto rub = [&](int i, int collider, const proxies::Contact& contact, double push) {
+    Vec3& x = particles_.positions[i];
+    x += push * contact.normal;
+    if (input.friction.empty()) return;
+    const Vec3 slip = x - before_[i] - contacts_.surface_motion(collider, x);
+    const Vec3 along = slip - slip.dot(contact.normal) * contact.normal;
+    const double length = along.norm(), most = input.friction[collider] * push;
+    x -= length > most ? Vec3((most / length) * along) : along;
+  };
+  for (int substep = 0; substep < input.substeps; ++substep) {
+    const double s = static_cast<double>(substep + 1) / input.substeps;
+    predict(input, s, h);
+    solve_constraints(h, substep % 2 == 0);
+    close_seams(*garment_, pinned_, particles_);
+    time = lap(time, times_.cloth);
+    if (!is_in_world(particles_)) return find_divergence(*garment_, substep, particles_.positions);
+    contacts_.for_each_contact(query, s, pinned_, particles_, rub);
+    time = lap(time, times_.contact);
+    for (int i = 0; i < particles_.count(); ++i)
+      if (!pinned_[i]) particles_.velocities[i] = (particles_.positions[i] - before_[i]) / h;
+    auto divergence = check(substep);
+    time = lap(time, times_.cloth);
+    if (divergence) return divergence;
+  }
+  return std::nullopt;
+}
+
+template class MeshXpbd<float>;
+template class MeshXpbd<double>;
+
+} // namespace tutu::cloth

@@ -1,0 +1,139 @@
+// The inner loops of cloth made of threads, on plain arrays: what WovenSheet hands to the code that is compiled once
+// for each SIMD target, in float and in double. Private to the folder.
+//
+// Layout. Columns are dealt to k_lanes lanes in runs: column j is lane j / blocks of block j % blocks. The 16 columns
+// of a block are therefore far apart on the sheet and share no constraint, and the weft neighbour of a whole block is
+// simply the next block. Element (block, row, lane) of an array is at block * block_stride + row * k_lanes + lane. The
+// neighbour of the last block is block 0 with its lanes turned by one: two blocks behind the last (halo 0 and 1) are
+// room for copies of block 0 and 1 turned so.
+//
+// Lanes without a column hold copies of lane 0 at rest with inverse mass 0; constraints that do not exist have the
+// compliance k_no_constraint.
+//
+// Arithmetic: each lane is computed by the same operations in the same order on every target, none of them approximate,
+// and no lane decides for another. Products are fused with sums where the target can: the bits are the same on all
+// targets that fuse (x86: from AVX2 on) and on all that do not, whatever their width.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tutu::cloth {
+
+inline constexpr int k_lanes = 16;
+/// m/N; over any real one by fifteen orders, and over the square of the smallest substep a number in float.
+inline constexpr double k_no_constraint = 1e24;
+
+/// One number an element. A sheet whose rows are uniform stores one block for all (block_stride 0).
+template <class T> struct WovenTable {
+  const T* data = nullptr;
+  std::ptrdiff_t block_stride = 0;
+};
+
+/// Springs of one direction: rest lengths (m) and compliances (m/N).
+template <class T> struct WovenSprings { WovenTable<T> length, compliance; };
+
+/// Curvature along threads, element (block, row) the middle of three: c = (x_next - x) * ratio - (x - x_previous),
+/// ratio the rest length of the first edge over that of the second.
+template <class T> struct WovenBends { WovenTable<T> ratio, compliance; };
+
+/// A sheet. Positions are in metres from an origin near the garment; arrays are aligned to 64 bytes.
+template <class T> struct WovenSheetView {
+  int rows = 0, blocks = 0, lanes = 0;
+  std::ptrdiff_t block_stride = 0;
+  T* x[3] = {};               ///< positions, m
+  T* was[3] = {};             ///< positions at the substep's start
+  T* v[3] = {};               ///< velocities, m/s
+  WovenTable<T> inverse_mass; ///< 1/kg; 0 for pinned particles
+  WovenSprings<T> warp;       ///< (block, row) joins row and row + 1
+  WovenSprings<T> weft;       ///< (block, row) joins block and block + 1
+  WovenSprings<T> falling;    ///< (block, row) joins it and (block + 1, row + 1)
+  WovenSprings<T> rising;     ///< (block + 1, row) and (block, row + 1)
+  WovenBends<T> warp_bend, weft_bend;
+  bool has_shear = false, has_bend = false;
+  T* multipliers[4] = {}; ///< of warp, weft, falling, rising: used when a substep has more than one pass
+  T* workspace = nullptr; ///< 5 blocks, for the line solve
+};
+
+template <class T> struct WovenStep {
+  T h = 0;                ///< s
+  T gravity[3] = {};      ///< m/s2
+  T kept = 1;             ///< share of the velocity that drag leaves in h
+  T fastest = 0;          ///< m/s; faster particles are slowed to this
+  int passes = 1;         ///< over all constraints
+  int newton_steps = 2;   ///< of each thread's line solve, a pass
+  int closing_sweeps = 1; ///< Gauss-Seidel over the warp edges after it
+};
+
+/// A placed collider. With no direction (a == b) it is a sphere.
+template <class T> struct WovenCollider {
+  T a[3] = {}, axis[3] = {};           ///< axis = b - a, m
+  T per_axis_squared = 0;              ///< 1 / |axis|^2; 0 for a sphere
+  T radius = 0;                        ///< with the contact offset, m
+  T move_a[3] = {}, move_axis[3] = {}; ///< since the substep's start: of a, and of b less that of a
+  T spin[3] = {};                      ///< rotation vector since then about the own axis (a sphere: about any), rad
+  T on_axis[3] = {};                   ///< normal for points on the axis
+  T friction = 0;
+  T moved = 0;           ///< m the faster end moved
+  T push_speed_step = 0; ///< m a point may be pushed beyond what it and the surface moved: h * push-out speed
+};
+
+/// Which features of a cell are asked besides its corners.
+template <class T> struct CellFeatures {
+  T around = 0;      ///< m: no cell reaches farther from its middle
+  bool wide = false; ///< weft edges and diagonals
+  bool high = false; ///< warp edges and faces as well
+};
+
+/// The half space normal . x <= offset.
+template <class T> struct WovenPlane {
+  T normal[3] = {};
+  T offset = 0; ///< with the contact offset, m
+  T friction = 0;
+  T push_speed_step = 0;
+};
+
+template <class T>
+using WovenFinish = T (*)(const WovenSheetView<T>&, const WovenStep<T>&, int block, int first, int last);
+
+/// One target's functions. Those with `first` and `last` work on rows first..last-1 of one block.
+template <class T> struct WovenKernel {
+  using Sheet = const WovenSheetView<T>&;
+  using Step = const WovenStep<T>&;
+
+  const char* target; ///< as Highway calls it
+
+  /// x goes to was and moves on by h v, v having taken gravity and drag. Pinned particles stay.
+  void (*predict)(Sheet, Step);
+  /// All passes over the constraints. False when an edge was longer than (1 + k_diverged_stretch) of its rest length or
+  /// no number.
+  bool (*constraints)(Sheet, Step);
+  /// Largest squared way since the substep's start, m2; not a number when any is not.
+  T (*farthest)(Sheet, int block, int first, int last);
+  /// v takes what constraints and contacts did to the prediction. Returns the largest squared way since the substep's
+  /// start, m2.
+  WovenFinish<T> finish;
+  WovenFinish<T> finish_and_predict; ///< both in one go
+  /// Lowest and highest coordinates, 3 numbers each.
+  void (*bounds)(Sheet, int block, int first, int last, T* low, T* high);
+
+  /// Pushes free particles out of a collider and rubs. Returns the smallest distance of one to the surface (with the
+  /// offset) before that, m, and adds to `contacts`.
+  /// `rise` adds to the collider's radius.
+  T (*contact_capsule)(Sheet, int block, int first, int last, const WovenCollider<T>&, T rise, std::int64_t* contacts);
+  T (*contact_plane)(Sheet, int block, int first, int last, const WovenPlane<T>&, std::int64_t* contacts);
+
+  /// Edges and faces of the cells between a block and the next, from row `first` to the one below `last` - 1. Before
+  /// the last block's the halo must be fetched (positions and starts), and given back after it.
+  void (*fetch_halo)(Sheet);
+  void (*contact_cells)(Sheet, int block, int first, int last, const WovenCollider<T>&, const CellFeatures<T>& features,
+                        std::int64_t* contacts);
+  void (*return_halo)(Sheet);
+};
+
+/// For the best target of this processor (or the one that a test has chosen). T: float, double.
+template <class T> WovenKernel<T> woven_kernel();
+template <> WovenKernel<float> woven_kernel<float>();
+template <> WovenKernel<double> woven_kernel<double>();
+
+} // namespace tutu::cloth

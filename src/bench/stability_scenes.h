@@ -1,0 +1,87 @@
+// The standard scenes of stability: one builder each for tests, `tutu bench` and figures. Nothing is read from disk.
+//
+// World: m, kg, s; y up, gravity (0, -9.81, 0), 60 frames a second. Starts are jittered by a seed, so that a scene is
+// as many runs as wanted and none of them is an accident of symmetry.
+#pragma once
+
+#include "cloth/garment.h"
+#include "proxies/shapes.h"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tutu::app {
+
+inline constexpr int k_stability_frames_per_second = 60;
+inline constexpr double k_stability_jitter = 0.001; ///< m, each way on each axis, of the free particles' start
+inline constexpr int k_stability_runs = 10;         ///< jittered starts of a scene
+
+/// What must hold. Those at the end: after the scene's last frame.
+struct StabilityLimits {
+  bool crossings = true; ///< none may be, from the first frame to the last
+  double stretch = 0.10; ///< at the end: p99 of the lengthening of grid edges; own weight gives 2 %
+  double depth = 0.001;  ///< m at the end, of the deepest particle
+  double speed = 0.5;    ///< m/s at the end, of the fastest particle
+  /// rad/s at the end, about the vertical through the origin, of the cloth as a whole: least and most.
+  std::optional<std::pair<double, double>> turn_rate;
+};
+
+struct StabilityScene {
+  std::string name; ///< with its variant: "fast-leg 30 m/s"
+  cloth::Garment garment;
+  std::vector<Vec3> start; ///< at rest
+  /// Colliders and pins at time t. Both have the same number of entries at all times.
+  std::function<void(double t, std::vector<proxies::Capsule>& capsules, std::vector<Vec3>& pins)> pose;
+  std::vector<Vec3> spin; ///< rad/s, of each collider; empty: none turns
+  double friction = 0.3;
+  double seconds = 2.0;
+  /// The frame that a jump by `jump` belongs to, where the solver is told of one: cloth is moved along, at rest.
+  std::optional<int> told_jump_frame;
+  Vec3 jump = Vec3::Zero();
+  StabilityLimits limits;
+};
+
+/// A capsule of 6 cm goes through a sheet of 0.6 m that hangs from its upper row, along its normal, at `speed` m/s, and
+/// stops where the sheet still reaches around it.
+StabilityScene fast_leg(double speed, std::uint64_t seed);
+
+/// A capsule of 3 cm pushes at 1 m/s into a hanging sheet whose cells are `cells` times its diameter, at the middle of
+/// a cell, lying across the warp (or, upright, along it).
+StabilityScene coarse_cells(double cells, bool along_warp, std::uint64_t seed);
+
+/// An arm stands in the wall of a tube at frame 0, 3 cm deep of its 5, with its axis within the tube or outside it.
+StabilityScene start_inside(bool axis_within, std::uint64_t seed);
+
+/// A skirt over hips and two legs, all of which jump by 5 m in one frame: told to the solver or not.
+StabilityScene teleport(bool told, std::uint64_t seed);
+
+/// Free particles anywhere in the cube around a hanging sheet.
+StabilityScene randomised(std::uint64_t seed);
+
+/// A hanging tube pressed into one plane: upright (through its axis) or level (at its waist).
+StabilityScene flattened(bool upright, std::uint64_t seed);
+
+/// A tube held at both ends; the lower one is turned three times round within 2 s, drawn up as far as the twist needs,
+/// and turned back.
+StabilityScene twist(std::uint64_t seed);
+
+/// A sheet falls into a funnel of sixteen capsules.
+StabilityScene funnel(std::uint64_t seed);
+
+/// A sheet lies on a ball that turns about the vertical: with friction it must come to turn with it, without it must
+/// not.
+StabilityScene rotating_sphere(double friction, std::uint64_t seed);
+inline constexpr double k_sphere_turn_rate = 2.0; ///< rad/s
+
+/// The variants of one scene, by the name of the command line. Builders take the seed.
+struct StabilityFamily {
+  std::string name, what;
+  std::vector<std::function<StabilityScene(std::uint64_t)>> variants;
+};
+const std::vector<StabilityFamily>& stability_families();
+
+} // namespace tutu::app

@@ -1,0 +1,52 @@
+// A sheet of nearly equilateral triangles: what an imported, remeshed garment is like.
+#pragma once
+
+#include "cloth/garment.h"
+
+#include <cmath>
+#include <random>
+
+namespace tutu::test {
+
+/// A rectangle from `corner` along `across` and `down` (whole edges), about `cells` triangles' sides wide. Inner
+/// corners are moved by up to `jitter` of a side, seeded. Rows of particles run along `across`.
+inline cloth::MeshShape mesh_sheet(int cells, const Vec3& corner, const Vec3& across, const Vec3& down,
+                                   double jitter = 0.0) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> shift(-jitter, jitter);
+  const double side = 1.0 / cells; // of the width
+  const int rows = std::max(1, static_cast<int>(std::lround(down.norm() / (across.norm() * side * std::sqrt(0.75)))));
+  cloth::MeshShape mesh;
+  std::vector<std::vector<std::uint32_t>> lines(rows + 1);
+  std::vector<double> at; // fraction of the width
+  for (int row = 0; row <= rows; ++row) {
+    const int count = cells + 1 + row % 2; // odd rows are half a side off, with a half one at each end
+    for (int k = 0; k < count; ++k) {
+      double u = row % 2 == 0 ? k * side : std::clamp((k - 0.5) * side, 0.0, 1.0);
+      double v = static_cast<double>(row) / rows;
+      if (row > 0 && row < rows && k > 0 && k + 1 < count) {
+        u += shift(random) * side;
+        v += shift(random) / rows;
+      }
+      lines[row].push_back(static_cast<std::uint32_t>(mesh.positions.size()));
+      mesh.positions.push_back(corner + u * across + v * down);
+      at.push_back(u);
+    }
+  }
+  for (int row = 0; row < rows; ++row) {
+    const auto &upper = lines[row], &lower = lines[row + 1];
+    for (std::size_t i = 0, j = 0; i + 1 < upper.size() || j + 1 < lower.size();) {
+      const bool above = j + 1 >= lower.size() || (i + 1 < upper.size() && at[upper[i + 1]] <= at[lower[j + 1]]);
+      if (above) {
+        mesh.triangles.push_back({upper[i], lower[j], upper[i + 1]});
+        ++i;
+      } else {
+        mesh.triangles.push_back({upper[i], lower[j], lower[j + 1]});
+        ++j;
+      }
+    }
+  }
+  return mesh;
+}
+
+} // namespace tutu::test

@@ -1,0 +1,321 @@
+// Cloth of threads once more, particle by particle in double: what cloth/woven_kernel.h promises, written from its
+// formulas. Of the kernel's layout it knows the order only: block after block, in each the columns `blocks` apart.
+#pragma once
+
+#include "cloth/garment.h"
+#include "cloth/tolerances.h"
+#include "cloth/woven_kernel.h"
+#include "proxies/feature_contact.h"
+#include "proxies/signed_distance.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace tutu::test {
+
+/// A collider as the twin wants it: where it is, where it was, and how it rubs.
+struct TwinCollider {
+  proxies::Capsule now, before; ///< now.radius with the contact offset
+  Vec3 spin = Vec3::Zero();     ///< rad
+  double friction = 0.0;
+  double push_speed_step = 0.0; ///< m
+
+  double moved() const { return std::max((now.a - before.a).norm(), (now.b - before.b).norm()); }
+  bool is_sphere() const { return now.a == now.b; }
+  double on_axis(const Vec3& closest) const {
+    return is_sphere() ? 0.0
+                       : std::clamp((closest - now.a).dot(now.b - now.a) / (now.b - now.a).squaredNorm(), 0.0, 1.0);
+  }
+  /// Way of the surface at the place t of the axis in direction n.
+  Vec3 surface_way(double t, const Vec3& n) const {
+    const Vec3 axis = (now.b - now.a).normalized();
+    const Vec3 about = is_sphere() ? spin : Vec3(axis * axis.dot(spin));
+    return (1.0 - t) * (now.a - before.a) + t * (now.b - before.b) + about.cross(now.radius * n);
+  }
+};
+
+struct TwinPlane {
+  proxies::Plane plane; ///< with the contact offset
+  double friction = 0.0;
+  double push_speed_step = 0.0;
+};
+
+class WovenTwin {
+public:
+  WovenTwin(const cloth::Garment& garment, int blocks)
+      : x(garment.rest_positions), was(x), v(x.size(), Vec3::Zero()), garment_(&garment), blocks_(blocks),
+        rows_(garment.rows), columns_(garment.columns), inverse_mass_(x.size()), warp_(x.size()), weft_(x.size()),
+        falling_(x.size()), rising_(x.size()) {
+    const auto pinned = cloth::pinned_flags(garment);
+    for (std::size_t i = 0; i < x.size(); ++i) inverse_mass_[i] = pinned[i] ? 0.0 : 1.0 / garment.masses[i];
+    for (const cloth::Spring& spring : garment.springs)
+      if (spring.kind != cloth::SpringKind::bend) note(spring);
+  }
+
+  std::vector<Vec3> x, was, v; ///< one a particle
+
+  void predict(const cloth::WovenStep<double>& step) {
+    const Vec3 gravity(step.gravity[0], step.gravity[1], step.gravity[2]);
+    was = x;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      v[i] = inverse_mass_[i] > 0.0 ? Vec3(step.kept * (v[i] + step.h * gravity)) : Vec3(Vec3::Zero());
+      x[i] += step.h * v[i];
+    }
+  }
+
+  void finish(const cloth::WovenStep<double>& step) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      v[i] += (x[i] - (was[i] + step.h * v[i])) / step.h;
+      if (v[i].norm() > step.fastest) v[i] *= step.fastest / v[i].norm();
+    }
+  }
+
+  /// Returns false when an edge was longer than it may be at the moment it was solved.
+  bool constraints(const cloth::WovenStep<double>& step) {
+    whole_ = true;
+    for (std::vector<Edge>* family : {&warp_, &weft_, &falling_, &rising_})
+      for (Edge& edge : *family) edge.lambda = 0.0;
+    const bool repeats = step.passes > 1;
+    for (int pass = 0; pass < step.passes; ++pass) {
+      if (pass == 0 && garment_->fabric.bend > 0.0) bend(step.h);
+      for (int block = 0; block < blocks_; ++block) {
+        if (garment_->fabric.shear > 0.0)
+          for (std::vector<Edge>* family : {&falling_, &rising_})
+            for_block(block, 0, rows_ - 1, [&](int i) { solve((*family)[i], step.h, repeats); });
+        for_block(block, 0, rows_, [&](int i) { solve(weft_[i], step.h, repeats); });
+      }
+      for (int block = 0; block < blocks_; ++block) {
+        for (int k = 0; k < step.newton_steps; ++k) for_block(block, 0, 1, [&](int i) { solve_thread(i, step.h); });
+        for (int k = 0; k < step.closing_sweeps; ++k)
+          for (int parity = 0; parity < 2; ++parity)
+            for (int row = parity; row + 1 < rows_; row += 2)
+              for_block(block, row, row + 1, [&](int i) { solve(warp_[i], step.h, true); });
+      }
+    }
+    return whole_;
+  }
+
+  double farthest(int block, int first, int last) const {
+    double most = 0.0;
+    for_block(block, first, last, [&](int i) { most = std::max(most, (x[i] - was[i]).squaredNorm()); });
+    return most;
+  }
+
+  /// Least distance of a particle of the tile to the surface before any was moved; contacts are counted.
+  double contact_capsule(int block, int first, int last, const TwinCollider& collider, double rise,
+                         std::int64_t* contacts) {
+    proxies::Capsule shape = collider.now;
+    shape.radius += rise;
+    TwinCollider risen = collider;
+    risen.now.radius = shape.radius;
+    double least = std::numeric_limits<double>::max();
+    for_block(block, first, last, [&](int i) {
+      const proxies::Contact contact = proxies::signed_distance(x[i], shape);
+      least = std::min(least, contact.distance);
+      if (inverse_mass_[i] == 0.0 || contact.distance >= 0.0) return;
+      const Vec3 surface = risen.surface_way(collider.on_axis(x[i]), contact.normal);
+      x[i] += response(-contact.distance, contact.normal, x[i] - was[i], surface, collider.moved(),
+                       collider.push_speed_step, collider.friction);
+      ++*contacts;
+    });
+    return least;
+  }
+
+  double contact_plane(int block, int first, int last, const TwinPlane& plane, std::int64_t* contacts) {
+    double least = std::numeric_limits<double>::max();
+    for_block(block, first, last, [&](int i) {
+      const proxies::Contact contact = proxies::signed_distance(x[i], plane.plane);
+      least = std::min(least, contact.distance);
+      if (inverse_mass_[i] == 0.0 || contact.distance >= 0.0) return;
+      x[i] += response(-contact.distance, contact.normal, x[i] - was[i], Vec3::Zero(), 0.0, plane.push_speed_step,
+                       plane.friction);
+      ++*contacts;
+    });
+    return least;
+  }
+
+  /// Edges along the weft and diagonals, and with `high` the other edges and faces, of the cells right of a block's
+  /// columns, each where the ones before it left its corners.
+  void contact_cells(int block, int first, int last, const TwinCollider& collider, bool high, std::int64_t* contacts) {
+    for_block(block, first, last, [&](int a) {
+      const std::optional<int> b = right_of(a);
+      const bool has_below = a / columns_ + 1 < rows_;
+      if (b) edge_contact(a, *b, collider, contacts);
+      if (!has_below) return;
+      const int d = a + columns_;
+      if (high) edge_contact(a, d, collider, contacts);
+      if (!b) return;
+      const int e = *b + columns_;
+      edge_contact(*b, d, collider, contacts);
+      if (!high) return;
+      for (int end = 0; end < (collider.is_sphere() ? 1 : 2); ++end) {
+        face_contact({a, d, *b}, end, collider, contacts);
+        face_contact({e, *b, d}, end, collider, contacts);
+      }
+    });
+  }
+
+  /// `lead_of_second`: the share of the second in the place they get.
+  void join(int first, int second, double share_of_second) {
+    x[first] = x[second] = (1.0 - share_of_second) * x[first] + share_of_second * x[second];
+  }
+
+  double inverse_mass(int i) const { return inverse_mass_[i]; }
+
+private:
+  struct Edge {
+    int i = 0, j = 0;
+    double rest = 0.0, stiffness = 0.0; ///< m, N/m; no edge where stiffness is 0
+    double lambda = 0.0;                ///< N s2 over passes; positive pulls
+  };
+
+  std::optional<int> right_of(int i) const {
+    if (i % columns_ + 1 < columns_) return i + 1;
+    if (!garment_->woven_shut) return std::nullopt;
+    return i - columns_ + 1;
+  }
+
+  void note(const cloth::Spring& spring) {
+    const auto put = [&](std::vector<Edge>& family, int at) {
+      family[at] = {spring.i, spring.j, spring.rest_length, spring.stiffness, 0.0};
+    };
+    for (const auto& [i, j] : {std::pair(spring.i, spring.j), std::pair(spring.j, spring.i)}) {
+      if (j == i + columns_) return put(warp_, i);
+      if (right_of(i) == j) return put(weft_, i);
+      if (const auto right = right_of(i); right && j == *right + columns_) return put(falling_, i);
+      if (const auto right = right_of(j - columns_); j >= columns_ && right == i) return put(rising_, j - columns_);
+    }
+    throw std::logic_error("a spring between no neighbours");
+  }
+
+  template <class F> void for_block(int block, int first, int last, const F& f) const {
+    for (int row = first; row < last; ++row)
+      for (int column = block; column < columns_; column += blocks_) f(row * columns_ + column);
+  }
+
+  void check(const Edge& edge, double length) {
+    if (!(length <= (1.0 + cloth::k_diverged_stretch) * edge.rest)) whole_ = false;
+  }
+
+  /// dlambda = (C - at lambda) / (w_i + w_j + at), at = 1 / (K h^2).
+  void solve(Edge& edge, double h, bool with_lambda) {
+    if (edge.stiffness == 0.0) return;
+    const Vec3 d = x[edge.j] - x[edge.i];
+    const double length = d.norm(), at = 1.0 / (edge.stiffness * h * h);
+    check(edge, length);
+    const double wi = inverse_mass_[edge.i], wj = inverse_mass_[edge.j];
+    const double gained = (length - edge.rest - (with_lambda ? at * edge.lambda : 0.0)) / (wi + wj + at);
+    edge.lambda += gained;
+    x[edge.i] += wi * gained / length * d;
+    x[edge.j] -= wj * gained / length * d;
+  }
+
+  /// (J W J^T + at) dlambda = C - at lambda over the thread that starts at particle `top`, as a dense system.
+  void solve_thread(int top, double h) {
+    const int edges = rows_ - 1;
+    Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(edges, 3 * rows_); // of -C: positive lambda pulls
+    Eigen::VectorXd weights(3 * rows_), right(edges), at(edges);
+    for (int row = 0; row < rows_; ++row) weights.segment<3>(3 * row).setConstant(inverse_mass_[top + row * columns_]);
+    for (int k = 0; k < edges; ++k) {
+      const int i = top + k * columns_;
+      const Edge& edge = warp_[i];
+      const Vec3 d = x[i + columns_] - x[i];
+      check(edge, d.norm());
+      gradient.block<1, 3>(k, 3 * k) = d.normalized().transpose();
+      gradient.block<1, 3>(k, 3 * k + 3) = -d.normalized().transpose();
+      at[k] = 1.0 / (edge.stiffness * h * h);
+      right[k] = d.norm() - edge.rest - at[k] * edge.lambda;
+    }
+    Eigen::MatrixXd system = gradient * weights.asDiagonal() * gradient.transpose();
+    system.diagonal() += at;
+    const Eigen::VectorXd gained = system.ldlt().solve(right);
+    const Eigen::VectorXd way = weights.asDiagonal() * gradient.transpose() * gained;
+    for (int k = 0; k < edges; ++k) warp_[top + k * columns_].lambda += gained[k];
+    for (int row = 0; row < rows_; ++row) x[top + row * columns_] += way.segment<3>(3 * row);
+  }
+
+  void bend(double h) {
+    for (int block = 0; block < blocks_; ++block)
+      for_block(block, 0, rows_, [&](int i) {
+        const std::optional<int> next = right_of(i), last = next ? right_of(*next) : std::nullopt;
+        if (last) solve_bend(i, *next, *last, h);
+      });
+    for (int block = 0; block < blocks_; ++block)
+      for (int colour = 0; colour < 3; ++colour)
+        for (int row = colour; row + 2 < rows_; row += 3)
+          for_block(block, row, row + 1, [&](int i) { solve_bend(i, i + columns_, i + 2 * columns_, h); });
+  }
+
+  /// Energy B A kappa^2 / 2 over the middle particle's area A, kappa = c / (l1 (l1 + l2) / 2),
+  /// c = (x_c - x_b) l1 / l2 - (x_b - x_a): a constraint c = 0 of compliance (l1 (l1 + l2) / 2)^2 / (B A).
+  void solve_bend(int a, int b, int c, double h) {
+    const auto& rest = garment_->rest_positions;
+    const double l1 = (rest[b] - rest[a]).norm(), l2 = (rest[c] - rest[b]).norm(), ratio = l1 / l2;
+    const double area = garment_->masses[b] / garment_->fabric.density, scale = 0.5 * l1 * (l1 + l2);
+    const double compliance = scale * scale / (garment_->fabric.bend * area);
+    const double wa = inverse_mass_[a], wb = inverse_mass_[b], wc = inverse_mass_[c];
+    const double denominator = wa + wb * (1.0 + ratio) * (1.0 + ratio) + wc * ratio * ratio + compliance / (h * h);
+    const Vec3 lambda = -(ratio * (x[c] - x[b]) - (x[b] - x[a])) / denominator;
+    x[a] += wa * lambda; // the gradients of c: 1, -(1 + ratio), ratio
+    x[b] -= wb * (1.0 + ratio) * lambda;
+    x[c] += wc * ratio * lambda;
+  }
+
+  /// Out along the normal, no farther than both sides moved and the push-out speed allow; back along what was slipped,
+  /// by at most friction times that.
+  static Vec3 response(double depth, const Vec3& n, const Vec3& way, const Vec3& surface_way, double surface_moved,
+                       double push_speed_step, double friction) {
+    const double push = std::min(depth, way.norm() + surface_moved + push_speed_step);
+    const Vec3 slip = way - surface_way, along = slip - slip.dot(n) * n;
+    const double length = along.norm();
+    return push * n - (length > friction * push ? Vec3(friction * push / length * along) : along);
+  }
+
+  /// Moves the corners so that sum_k share_k * corner_k moves by the response, each by its inverse mass times share.
+  template <std::size_t N>
+  void spread(const std::array<int, N>& corners, const proxies::FeatureContact& contact, const TwinCollider& collider,
+              std::int64_t* contacts) {
+    double weights = 0.0, mass = 0.0, most = 0.0;
+    Vec3 way = Vec3::Zero();
+    for (std::size_t k = 0; k < N; ++k) {
+      weights += inverse_mass_[corners[k]] * contact.weights[k] * contact.weights[k];
+      mass += inverse_mass_[corners[k]];
+      most = std::max(most, inverse_mass_[corners[k]] * contact.weights[k]);
+      way += contact.weights[k] * (x[corners[k]] - was[corners[k]]);
+    }
+    if (mass == 0.0) return;
+    ++*contacts;
+    if (weights == 0.0) return;                                 // at a pinned corner exactly
+    weights = std::max(weights, most / cloth::k_longest_lever); // near one the others are not thrown
+    const Vec3 moved =
+        response(-contact.distance, contact.normal, way, collider.surface_way(contact.on_axis, contact.normal),
+                 collider.moved(), collider.push_speed_step, collider.friction);
+    for (std::size_t k = 0; k < N; ++k)
+      x[corners[k]] += inverse_mass_[corners[k]] * contact.weights[k] / weights * moved;
+  }
+
+  void edge_contact(int a, int b, const TwinCollider& collider, std::int64_t* contacts) {
+    const auto contact = proxies::edge_contact(x[a], x[b], collider.now, Vec3::Zero());
+    if (contact.distance < 0.0) spread<2>({a, b}, contact, collider, contacts);
+  }
+
+  void face_contact(const std::array<int, 3>& corners, int end, const TwinCollider& collider, std::int64_t* contacts) {
+    const Vec3& centre = end == 0 ? collider.now.a : collider.now.b;
+    auto contact = proxies::triangle_contact(x[corners[0]], x[corners[1]], x[corners[2]],
+                                             {centre, centre, collider.now.radius}, Vec3::Zero());
+    if (contact.feature != proxies::ClothFeature::face || contact.distance >= 0.0) return;
+    contact.on_axis = end;
+    spread<3>(corners, contact, collider, contacts);
+  }
+
+  const cloth::Garment* garment_;
+  int blocks_, rows_, columns_;
+  std::vector<double> inverse_mass_;
+  std::vector<Edge> warp_, weft_, falling_, rising_; ///< at their upper left particle
+  bool whole_ = true;
+};
+
+} // namespace tutu::test
