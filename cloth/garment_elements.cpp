@@ -101,4 +101,10 @@ std::vector<Tether> build_tethers(const Garment& garment) {
   return tethers;
 }
 
+double longest_of(const Tether& tether, const Fabric& fabric) {
+  constexpr double k_give = 0.02;       // less would hold threads that a finer substep would not stretch
+  constexpr double k_load = 3.0 * 9.81; // m/s2: a dancer's turn takes cloth to about 2 g on top of its weight
+  return tether.length * (1.0 + k_give + k_load * fabric.density / fabric.stretch * tether.length);
+}
+
 } // namespace tutu::cloth

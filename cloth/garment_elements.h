@@ -50,4 +50,8 @@ struct Tether {
 /// None without pins.
 std::vector<Tether> build_tethers(const Garment& garment);
 
+/// Beyond this length, m, it is the iteration that gives and not the cloth: 2 % more than the tether's, and what three
+/// times the cloth's own weight would stretch it by.
+double longest_of(const Tether& tether, const Fabric& fabric);
+
 } // namespace tutu::cloth

@@ -8,8 +8,6 @@
 
 namespace tutu::cloth {
 
-constexpr double k_tether_give = 0.02; // of the length: less would hold threads that a finer substep would not stretch
-constexpr double k_tether_load = 3.0 * 9.81; // m/s2: a dancer's turn takes cloth to about 2 g on top of its weight
 
 template <class Scalar>
 MeshXpbd<Scalar>::MeshXpbd(const Garment& garment)
@@ -47,10 +45,8 @@ template <class Scalar> void MeshXpbd<Scalar>::add_hinges() {
 }
 
 template <class Scalar> void MeshXpbd<Scalar>::add_ropes() {
-  const double strain = k_tether_load * garment_->fabric.density / garment_->fabric.stretch; // a metre of cloth, 1/m
   for (const Tether& tether : build_tethers(*garment_))
-    ropes_.push_back({tether.particle, tether.anchor,
-                      static_cast<Scalar>(tether.length * (1.0 + k_tether_give + strain * tether.length))});
+    ropes_.push_back({tether.particle, tether.anchor, static_cast<Scalar>(longest_of(tether, garment_->fabric))});
 }
 
 template <class Scalar> void MeshXpbd<Scalar>::reset(std::span<const Vec3> positions) {

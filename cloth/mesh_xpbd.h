@@ -32,9 +32,6 @@ namespace tutu::cloth {
 /// Too few substeps leave cloth softer than its fabric, in stretch and in bend, and more so the finer it is: the
 /// substeps that keep a cantilever within 10 % of its deflection rise with the square of its cells.
 ///
-/// A tether gives by 2 % and by what three times the cloth's own weight would stretch it: beyond that it is the
-/// iteration that gives, not the cloth.
-///
 /// A contact is pushed out along its normal; the tangential motion relative to the moving surface is taken back by at
 /// most friction * push (Coulomb, on positions).
 template <class Scalar> class MeshXpbd final : public Solver {

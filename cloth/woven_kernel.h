@@ -17,6 +17,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
 namespace tutu::cloth {
 
@@ -37,6 +38,14 @@ template <class T> struct WovenSprings { WovenTable<T> length, compliance; };
 /// ratio the rest length of the first edge over that of the second.
 template <class T> struct WovenBends { WovenTable<T> ratio, compliance; };
 
+/// A free particle keeps within `length`, m, of a pinned one: `anchor` is the latter's element. One entry an element of
+/// the view; far longer than any sheet where there is no tether.
+template <class T> struct WovenTethers {
+  using Element = std::conditional_t<sizeof(T) == sizeof(std::int32_t), std::int32_t, std::int64_t>; ///< as wide as T
+  const T* length = nullptr; ///< null: no particle has one
+  const Element* anchor = nullptr;
+};
+
 /// A sheet. Positions are in metres from an origin near the garment; arrays are aligned to 64 bytes.
 template <class T> struct WovenSheetView {
   int rows = 0, blocks = 0, lanes = 0;
@@ -51,7 +60,8 @@ template <class T> struct WovenSheetView {
   WovenSprings<T> rising;     ///< (block + 1, row) and (block, row + 1)
   WovenBends<T> warp_bend, weft_bend;
   bool has_shear = false, has_bend = false;
-  T* multipliers[4] = {}; ///< of warp, weft, falling, rising: used when a substep has more than one pass
+  WovenTethers<T> tethers;
+  T* multipliers[4] = {}; ///< of warp, weft, falling, rising: used when a substep has more than one pass, or tethers
   T* workspace = nullptr; ///< 5 blocks, for the line solve
 };
 
@@ -105,8 +115,8 @@ template <class T> struct WovenKernel {
 
   /// x goes to was and moves on by h v, v having taken gravity and drag. Pinned particles stay.
   void (*predict)(Sheet, Step);
-  /// All passes over the constraints. False when an edge was longer than (1 + k_diverged_stretch) of its rest length or
-  /// no number.
+  /// Bending, tethers, then all passes over the springs. False when an edge or a taut tether was longer than (1 +
+  /// k_diverged_stretch) of its length, or an edge no number.
   bool (*constraints)(Sheet, Step);
   /// Largest squared way since the substep's start, m2; not a number when any is not.
   T (*farthest)(Sheet, int block, int first, int last);

@@ -1,5 +1,6 @@
 #include "cloth/woven_sheet.h"
 
+#include "cloth/garment_elements.h"
 #include "cloth/tolerances.h"
 
 #include <algorithm>
@@ -18,6 +19,15 @@ int lanes_for(int columns, bool woven_shut, int fewest) {
   for (int lanes = most; lanes > 1; --lanes)
     if (columns % lanes == 0) return lanes;
   return 1;
+}
+
+/// Whether fewer than half of the threads that are solved as wholes have a pinned particle: then most of the load goes
+/// through the weft, which is not.
+bool is_held_at_few_places(const Weave& weave, const Garment& garment) {
+  std::vector<std::uint8_t> held(weave.columns, 0);
+  for (const Pin& pin : garment.pins) held[weave.column(pin.particle)] = 1;
+  const auto count = 2 * std::count(held.begin(), held.end(), 1);
+  return count > 0 && count < weave.columns;
 }
 
 /// Equal but for rounding: what a ring of equal cells gives.
@@ -65,6 +75,8 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   for (T** field : {view_.x, view_.was, view_.v})
     for (int axis = 0; axis < 3; ++axis) field[axis] = array(size);
   view_.workspace = array(5 * static_cast<std::size_t>(view_.block_stride));
+  const bool tethered = is_held_at_few_places(weave_, garment);
+  with_multipliers = with_multipliers || tethered; // some edges are solved twice then
   view_.multipliers[0] = array(with_multipliers ? size : view_.block_stride);
   for (int k = 1; k < 4; ++k) view_.multipliers[k] = with_multipliers ? array(size) : nullptr;
 
@@ -84,6 +96,7 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
     }
   build_springs(garment);
   build_bends(garment);
+  if (tethered) build_ropes(garment);
   set(garment.rest_positions, std::vector<Vec3>(garment.rest_positions.size(), Vec3::Zero()));
 }
 
@@ -189,6 +202,22 @@ template <class T> void WovenSheet<T>::build_bends(const Garment& garment) {
   view_.weft_bend = {table(weft_ratio), table(weft)};
 }
 
+template <class T> void WovenSheet<T>::build_ropes(const Garment& garment) {
+  const std::size_t size = static_cast<std::size_t>(view_.blocks + 2) * view_.block_stride;
+  constexpr T k_no_tether = T(1e6); // m, and its square is a number
+  arrays_.emplace_back(size);
+  T* const length = arrays_.back().data();
+  std::fill_n(length, size, k_no_tether);
+  anchors_ = AlignedArray<typename WovenTethers<T>::Element>(size);
+  for (const Tether& tether : build_tethers(garment)) {
+    if (!(tether.length > 0.0)) continue; // a seam holds it
+    length[elements_[tether.particle]] = static_cast<T>(longest_of(tether, garment.fabric));
+    anchors_.data()[elements_[tether.particle]] =
+        static_cast<typename WovenTethers<T>::Element>(elements_[tether.anchor]);
+  }
+  view_.tethers = {length, anchors_.data()};
+}
+
 template <class T> Vec3 WovenSheet<T>::at(T* const* field, int particle) const {
   const std::ptrdiff_t element = elements_[particle];
   return {static_cast<double>(field[0][element]), static_cast<double>(field[1][element]),
@@ -261,6 +290,8 @@ template <class T> void WovenSheet<T>::follow() {
 
 template class AlignedArray<float>;
 template class AlignedArray<double>;
+template class AlignedArray<std::int32_t>;
+template class AlignedArray<std::int64_t>;
 template class WovenSheet<float>;
 template class WovenSheet<double>;
 

@@ -72,6 +72,7 @@ private:
   Vec3 at(T* const* field, int particle) const;
   void build_springs(const Garment& garment);
   void build_bends(const Garment& garment);
+  void build_ropes(const Garment& garment);
   WovenTable<T> table(std::vector<T> values);
 
   const Garment* garment_;
@@ -81,6 +82,7 @@ private:
   std::vector<std::ptrdiff_t> elements_;      ///< one a particle
   std::vector<std::ptrdiff_t> empty_, twins_; ///< elements without a particle, and whose places they take
   std::vector<AlignedArray<T>> arrays_;
+  AlignedArray<typename WovenTethers<T>::Element> anchors_;
 };
 
 } // namespace tutu::cloth

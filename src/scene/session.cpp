@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 namespace tutu::app {
 namespace {
@@ -56,7 +55,7 @@ std::string SessionRecovery::message() const {
 Session::Session(const Scene& scene)
     : scene_(&scene), local_(scene.character.skeleton.rest_local), world_(rig::rest_model(scene.character.skeleton)),
       colliders_(scene.proxies, ground_of(scene.description)),
-      threads_(std::clamp(scene.description.threads, 1, std::max(1, static_cast<int>(scene.garments.size())))),
+      workers_(std::clamp(scene.description.threads, 1, std::max(1, static_cast<int>(scene.garments.size())))),
       palette_(scene.character.skin.slot_count()), body_positions_(scene.character.mesh.positions.size()),
       body_normals_(scene.character.mesh.positions.size()) {
   for (const Transform& joint : world_) rest_inverse_.push_back(joint.inverse());
@@ -71,7 +70,6 @@ Session::Session(const Scene& scene)
     queries_.push_back(proxies::make_query(scene.description.backend));
   }
   garment_frames_.resize(garments_.size());
-  if (threads_ > 1) arena_ = std::make_unique<tbb::task_arena>(threads_);
   for (const proxies::Proxy& proxy : colliders_.proxies()) friction_.push_back(proxy.friction);
   friction_.push_back(k_ground_friction);
   troubles_.first_recoveries.reserve(SessionTroubles::k_kept);
@@ -186,17 +184,9 @@ void Session::advance_to(std::span<const Transform> local, double extra_drag) {
 void Session::advance_garments(double extra_drag) {
   Stopwatch watch;
   const FrameTimes before = times_;
-  if (arena_) {
-    arena_->execute([&] {
-      tbb::parallel_for(
-          std::size_t{0}, garments_.size(), [&](std::size_t g) { advance_garment(g, extra_drag); },
-          tbb::simple_partitioner());
-    });
-  } else {
-    for (std::size_t g = 0; g < garments_.size(); ++g) advance_garment(g, extra_drag);
-  }
+  workers_.for_each(garments_.size(), [&](std::size_t g) { advance_garment(g, extra_drag); });
   for (std::size_t g = 0; g < garments_.size(); ++g) note_garment(g);
-  if (!arena_) return;
+  if (workers_.count() == 1) return;
   // What was done side by side is told as the share of the time that passed.
   const double share = watch.lap() / std::max(1e-9, times_.total() - before.total());
   times_.broad *= share;

@@ -5,10 +5,10 @@
 #include "cloth/recovery.h"
 #include "proxies/collider_set.h"
 #include "src/scene/scene.h"
+#include "src/workers.h"
 
 #include <functional>
 #include <memory>
-#include <oneapi/tbb/task_arena.h>
 #include <optional>
 #include <string>
 #include <vector>
@@ -102,7 +102,7 @@ public:
   std::string_view backend() const {
     return proxies::k_backend_names[static_cast<std::size_t>(scene_->description.backend)];
   }
-  int threads() const { return threads_; }
+  int threads() const { return workers_.count(); }
   std::uint64_t state_hash() const;
 
 private:
@@ -131,8 +131,7 @@ private:
   std::vector<std::unique_ptr<proxies::CollisionQuery>> queries_; ///< [garment]: one serves one thread
   std::vector<cloth::GuardedSolver> garments_;
   std::vector<GarmentFrame> garment_frames_; ///< [garment], the last
-  int threads_ = 1;
-  std::unique_ptr<tbb::task_arena> arena_;         ///< of that many threads; none for one
+  Workers workers_;
   std::vector<double> friction_;                   ///< of each collider, the ground last
   std::vector<std::vector<Vec3>> start_positions_; ///< of start(), and the joints then
   std::vector<Transform> start_world_;

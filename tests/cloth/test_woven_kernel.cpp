@@ -138,7 +138,7 @@ TYPED_TEST(WovenKernels, LayoutsAreThoseMeant) {
   using T = TypeParam;
   std::vector<int> lanes;
   for (const auto& one : this->cases_) lanes.push_back(WovenSheet<T>(one.garment, false).view().lanes);
-  lanes.resize(lanes.size() / 2);
+  lanes.resize(16); // after them come the same ones, pinned
   EXPECT_EQ(lanes, (std::vector{16, 16, 16, 15, 15, 10, 1, 1, 13, 16, 10, 6, 16, 1, 1, 1}));
 }
 

@@ -9,7 +9,6 @@
 #include <array>
 #include <gmock/gmock.h>
 #include <limits>
-#include <thread>
 
 using namespace tutu;
 using namespace tutu::proxies;
@@ -257,26 +256,6 @@ TEST(CollisionQuery, UnusableInputIsRefusedWithAReproduction) {
       EXPECT_THAT(error.what(), ::testing::HasSubstr("collider 0 Capsule{{0.10000000000000001, 0, 0}, "
                                                      "{0, 0.33333333333333331, 0}, -2.5}"));
     }
-  }
-}
-
-TEST(CollisionQuery, ContactMayBeAskedFromSeveralThreads) {
-  for (const Backend backend : k_searching) {
-    const auto query = make_query(backend);
-    std::mt19937_64 random(7);
-    const ColliderScene scene = random_scene(random, 20, 500, 0.0);
-    query->place(scene.start, std::nullopt);
-    std::vector<double> sums(4);
-    std::vector<std::thread> threads;
-    for (double& sum : sums)
-      threads.emplace_back([&] {
-        double total = 0.0;
-        for (const Vec3& point : scene.points)
-          for (int c = 0; c < 20; ++c) total += query->contact(point, c).distance;
-        sum = total;
-      });
-    for (std::thread& thread : threads) thread.join();
-    EXPECT_THAT(sums, ::testing::Each(sums[0]));
   }
 }
 

@@ -93,6 +93,10 @@ inline std::vector<WovenCase> woven_cases() {
     detail::hold_upright(pinned.garment);
     cases.push_back(pinned);
   }
+  cases.push_back({"grid, by two corners", detail::grid(24, 20, plain)});
+  cases.back().garment.pins = {{0, 0}, {19, 0}};
+  cases.push_back({"ring, by three particles", detail::tube(15, 48, plain, 0.9, no_seam)});
+  cases.back().garment.pins = {{0, 0}, {17, 0}, {31, 0}};
   return cases;
 }
 

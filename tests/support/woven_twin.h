@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cloth/garment.h"
+#include "cloth/garment_elements.h"
 #include "cloth/tolerances.h"
 #include "cloth/woven_kernel.h"
 #include "proxies/feature_contact.h"
@@ -53,6 +54,11 @@ public:
     for (std::size_t i = 0; i < x.size(); ++i) inverse_mass_[i] = pinned[i] ? 0.0 : 1.0 / garment.masses[i];
     for (const cloth::Spring& spring : garment.springs)
       if (spring.kind != cloth::SpringKind::bend) note(spring);
+    std::vector<std::uint8_t> held(columns_, 0); // threads; of garments that lie unturned
+    for (const cloth::Pin& pin : garment.pins) held[pin.particle % columns_] = 1;
+    const auto count = std::count(held.begin(), held.end(), 1);
+    if (count > 0 && 2 * count < columns_) tethers_ = cloth::build_tethers(garment);
+    std::erase_if(tethers_, [](const cloth::Tether& tether) { return tether.length == 0.0; });
   }
 
   std::vector<Vec3> x, was, v; ///< one a particle
@@ -78,9 +84,15 @@ public:
     whole_ = true;
     for (std::vector<Edge>* family : {&warp_, &weft_, &falling_, &rising_})
       for (Edge& edge : *family) edge.lambda = 0.0;
-    const bool repeats = step.passes > 1;
+    const bool repeats = step.passes > 1 || !tethers_.empty();
+    if (garment_->fabric.bend > 0.0) bend(step.h);
+    for (const cloth::Tether& tether : tethers_) {
+      const Vec3 d = x[tether.particle] - x[tether.anchor];
+      const double longest = cloth::longest_of(tether, garment_->fabric);
+      if (d.norm() > (1.0 + cloth::k_diverged_stretch) * longest) whole_ = false;
+      if (d.norm() > longest) x[tether.particle] = x[tether.anchor] + longest * d.normalized();
+    }
     for (int pass = 0; pass < step.passes; ++pass) {
-      if (pass == 0 && garment_->fabric.bend > 0.0) bend(step.h);
       for (int block = 0; block < blocks_; ++block) {
         if (garment_->fabric.shear > 0.0)
           for (std::vector<Edge>* family : {&falling_, &rising_})
@@ -94,6 +106,9 @@ public:
             for (int row = parity; row + 1 < rows_; row += 2)
               for_block(block, row, row + 1, [&](int i) { solve(warp_[i], step.h, true); });
       }
+      if (tethers_.empty()) continue;
+      for (int block = blocks_ - 1; block >= 0; --block)
+        for_block(block, 0, rows_, [&](int i) { solve(weft_[i], step.h, true); });
     }
     return whole_;
   }
@@ -315,6 +330,7 @@ private:
   int blocks_, rows_, columns_;
   std::vector<double> inverse_mass_;
   std::vector<Edge> warp_, weft_, falling_, rising_; ///< at their upper left particle
+  std::vector<cloth::Tether> tethers_;               ///< none where most threads are held
   bool whole_ = true;
 };
 
