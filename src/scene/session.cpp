@@ -55,11 +55,10 @@ std::string SessionRecovery::message() const {
 
 Session::Session(const Scene& scene)
     : scene_(&scene), local_(scene.character.skeleton.rest_local), world_(rig::rest_model(scene.character.skeleton)),
-      colliders_(scene.proxies, ground_of(scene.description)),
+      pins_(scene), colliders_(scene.proxies, ground_of(scene.description)),
       threads_(std::clamp(scene.description.threads, 1, std::max(1, static_cast<int>(scene.garments.size())))),
       palette_(scene.character.skin.slot_count()), body_positions_(scene.character.mesh.positions.size()),
       body_normals_(scene.character.mesh.positions.size()) {
-  for (const Transform& joint : world_) rest_inverse_.push_back(joint.inverse());
   cloth::SolverOptions options;
   options.kind = scene.description.solver;
   options.self_collision = scene.description.self_collision;
@@ -67,7 +66,6 @@ Session::Session(const Scene& scene)
     garments_.emplace_back(cloth::make_solver(garment, options), garment);
     pins_start_.emplace_back(garment.pins.size());
     pins_end_.emplace_back(garment.pins.size());
-    skin_pin_scratch_.emplace_back();
     queries_.push_back(proxies::make_query(scene.description.backend));
   }
   garment_frames_.resize(garments_.size());
@@ -86,15 +84,7 @@ void Session::pose_at(double time) {
 }
 
 void Session::place_pins(std::vector<std::vector<Vec3>>& targets) {
-  for (std::size_t g = 0; g < garments_.size(); ++g) {
-    const cloth::Garment& garment = scene_->garments[g];
-    for (std::size_t k = 0; k < garment.pins.size(); ++k) {
-      if (garment.attachments[garment.pins[k].attachment].skin) continue;
-      const int joint = scene_->attachment_joints[g][garment.pins[k].attachment];
-      targets[g][k] = world_[joint] * (rest_inverse_[joint] * garment.rest_positions[garment.pins[k].particle]);
-    }
-    place_on_skin(scene_->skin_pins[g], world_, skin_pin_scratch_[g], targets[g]);
-  }
+  for (std::size_t g = 0; g < garments_.size(); ++g) pins_.place(g, world_, targets[g]);
 }
 
 void Session::start(const std::vector<std::vector<Vec3>>& garment_positions) {

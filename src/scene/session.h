@@ -4,7 +4,7 @@
 #include "cloth/adaptive_substeps.h"
 #include "cloth/recovery.h"
 #include "proxies/collider_set.h"
-#include "src/scene/scene.h"
+#include "src/scene/garment_pins.h"
 
 #include <functional>
 #include <memory>
@@ -126,7 +126,7 @@ private:
 
   const Scene* scene_;
   std::vector<Transform> local_, world_;
-  std::vector<Transform> rest_inverse_; ///< joint_from_model at rest
+  GarmentPins pins_;
   proxies::ColliderSet colliders_;
   std::vector<std::unique_ptr<proxies::CollisionQuery>> queries_; ///< [garment]: one serves one thread
   std::vector<cloth::GuardedSolver> garments_;
@@ -138,7 +138,6 @@ private:
   std::vector<Transform> start_world_;
   std::vector<Transform> world_before_;                  ///< at the frame's start
   std::vector<std::vector<Vec3>> pins_start_, pins_end_; ///< [garment][pin], world, m
-  std::vector<SkinPinScratch> skin_pin_scratch_;         ///< [garment]
   std::vector<rig::SkinMatrix> palette_;
   std::vector<Vec3f> body_positions_, body_normals_;
   FrameTimes times_;
