@@ -20,6 +20,7 @@
 namespace tutu::proxies {
 
 struct MeshTopology;
+class MeshTree;
 
 /// What of a triangle a b c is nearest to a point.
 enum class MeshFeature : std::uint8_t { face, edge_ab, edge_bc, edge_ca, vertex_a, vertex_b, vertex_c };
@@ -106,14 +107,18 @@ public:
   MeshHits hits(const Capsule& capsule) const;
 
 private:
-  std::optional<MeshPoint> search(const Vec3& point, double within, bool outer_only) const;
+  void require_count(std::size_t vertices) const;
+  void refit();
+  bool winds_around(const Vec3& point) const;
   Vec3 pseudonormal(const MeshPoint& on) const;
 
   std::vector<Vec3> positions_;
   std::vector<rig::Triangle> triangles_;
   std::unique_ptr<MeshTopology> topology_;
+  std::unique_ptr<MeshTree> tree_;
   MeshCensus census_;
-  std::vector<bool> inner_; ///< shell: wholly inside the others
+  bool is_closed_ = false;          ///< outside the box of all is outside
+  std::vector<std::uint8_t> inner_; ///< triangle: of a shell wholly inside the others; empty where there is none
 };
 
 } // namespace tutu::proxies

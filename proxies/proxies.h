@@ -9,7 +9,7 @@
 //
 // Units m. Signed distance is negative inside; a contact normal is unit and points from the collider to the particle:
 // particle = closest + distance * normal. Spheres are capsules of no length, so the hot path knows one shape.
-// FCL is asked only in broad_phase.cpp and narrow_phase.cpp.
+// FCL is asked only in broad_phase.cpp, narrow_phase.cpp and mesh_tree.cpp.
 #pragma once
 
 #include "proxies/body_mesh.h"       // IWYU pragma: export
