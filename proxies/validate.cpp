@@ -6,19 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <queue>
+#include <limits>
 
 namespace tutu::proxies {
 namespace {
 
 /// What is known of a cell from its middle: the error there, whether the middle counts (`outside` <= 0: a 1-Lipschitz
-/// distance from the region that does), and how far the cell reaches.
+/// distance from the region that does), how far the cell reaches, and what else bounds the error in it.
 struct Probe {
   double error = 0.0, outside = 0.0, radius = 0.0;
+  double ceiling = std::numeric_limits<double>::infinity();
 
   bool counts() const { return outside <= 0.0; }
   /// No point of the cell that counts has a greater error.
-  double upper() const { return outside > radius ? 0.0 : std::max(0.0, error + radius); }
+  double upper() const { return outside > radius ? 0.0 : std::max(0.0, std::min(error + radius, ceiling)); }
 };
 
 /// Narrows the greatest error over cells by best-first branch and bound.
@@ -79,6 +80,17 @@ struct SkinCell {
   }
 };
 
+/// Distance from one capsule is convex, so over a triangle it is greatest at a corner; that from the union is no
+/// greater. Where one proxy stands for the whole cell this is far below error + radius.
+Probe probe_of(const SkinCell& cell, const CapsuleUnion& proxies, const CapsuleUnion::Nearest& at_middle) {
+  Probe probe{at_middle.distance, 0.0, cell.radius()};
+  if (at_middle.capsule == CapsuleUnion::k_none) return probe;
+  const auto nearest = static_cast<std::size_t>(at_middle.capsule);
+  probe.ceiling = std::max({proxies.distance(cell.a, nearest), proxies.distance(cell.b, nearest),
+                            proxies.distance(cell.c, nearest), at_middle.distance});
+  return probe;
+}
+
 /// Signed distance from what the garments can reach.
 struct Reach {
   CapsuleUnion balls;
@@ -97,12 +109,12 @@ void measure_skin(const BodyMesh& body, const SkinSamples& samples, const Capsul
   errors.nearest.resize(samples.size());
   errors.skin_in_reach.resize(samples.size());
   BoundSearch<SkinCell> all(effort.gap), reached(effort.gap);
-  const auto probe_at = [&](const Vec3& p, double radius) { return Probe{proxies.distance(p), 0.0, radius}; };
   for (std::size_t s = 0; s < samples.size();) {
     const int triangle = samples.samples[s].triangle;
     const rig::Triangle& t = triangles[triangle];
     const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
-    const double radius = cell_radius(a, b, c, samples.parts[triangle]);
+    const int parts = samples.parts[triangle];
+    const Vec3 middle = (a + b + c) / 3.0;
     for (; s < samples.size() && samples.samples[s].triangle == triangle; ++s) {
       const Vec3& w = samples.samples[s].weights;
       const Vec3 p = w[0] * a + w[1] * b + w[2] * c;
@@ -111,28 +123,29 @@ void measure_skin(const BodyMesh& body, const SkinSamples& samples, const Capsul
       errors.skin[s] = nearest.distance;
       errors.nearest[s] = nearest.capsule;
       errors.skin_in_reach[s] = outside <= 0.0;
-      // The part of the triangle about this sample: a third of the way, turned round where its corner is.
-      const double third = 1.0 / (3.0 * samples.parts[triangle]);
-      const bool turned = std::lround(w[1] / third) % 3 == 2;
-      const double sign = turned ? -1.0 : 1.0, scale = sign / samples.parts[triangle];
-      const Vec3 middle = (a + b + c) / 3.0;
+      // The part of the triangle about this sample: as the triangle, or turned round.
+      const bool turned = std::lround(w[1] * 3.0 * parts) % 3 == 2;
+      const double scale = (turned ? -1.0 : 1.0) / parts;
       const SkinCell cell{p + scale * (a - middle), p + scale * (b - middle), p + scale * (c - middle)};
-      all.add(cell, {nearest.distance, 0.0, radius});
-      reached.add(cell, {nearest.distance, outside, radius});
+      Probe probe = probe_of(cell, proxies, nearest);
+      all.add(cell, probe);
+      if (reach.everything) continue;
+      probe.outside = outside;
+      reached.add(cell, probe);
     }
   }
-  errors.under = all.run(effort.skin_refinements, [&](const SkinCell& cell, const auto& visit) {
-    for (const SkinCell& part : cell.quarters()) visit(part, probe_at(part.middle(), part.radius()));
-  });
-  errors.under_in_reach = errors.under;
-  if (reach.everything) return;
-  errors.under_in_reach = reached.run(effort.skin_refinements, [&](const SkinCell& cell, const auto& visit) {
-    for (const SkinCell& part : cell.quarters()) {
-      Probe probe = probe_at(part.middle(), part.radius());
-      probe.outside = reach.outside(part.middle());
-      visit(part, probe);
-    }
-  });
+  const auto split = [&](bool within_reach) {
+    return [&, within_reach](const SkinCell& cell, const auto& visit) {
+      for (const SkinCell& part : cell.quarters()) {
+        const Vec3 p = part.middle();
+        Probe probe = probe_of(part, proxies, proxies.nearest(p));
+        if (within_reach) probe.outside = reach.outside(p);
+        visit(part, probe);
+      }
+    };
+  };
+  errors.under = all.run(effort.skin_refinements, split(false));
+  errors.under_in_reach = reach.everything ? errors.under : reached.run(effort.skin_refinements, split(true));
 }
 
 void measure_surface(const BodyMesh& body, std::span<const Capsule> colliders, const CapsuleUnion& proxies,
@@ -153,6 +166,7 @@ void measure_surface(const BodyMesh& body, std::span<const Capsule> colliders, c
     const double outside = reach.outside(p);
     if (probe.counts()) errors.surface.push_back({cell.capsule, surface.area(cell), probe.error, outside <= 0.0});
     all.add(cell, probe);
+    if (reach.everything) continue;
     probe.outside = std::max(probe.outside, outside);
     reached.add(cell, probe);
   }

@@ -4,7 +4,8 @@
 //   over:  the proxies stick out of the skin. Samples of the proxies' outer surface against the body mesh.
 //
 // Both distances are 1-Lipschitz, so a sample whose cell reaches r around it speaks for its cell up to r: the greatest
-// error of all points, not only of samples, is known between a value that was found and a bound.
+// error of all points, not only of samples, is known between a value that was found and a bound. (Distance from a
+// single proxy is convex besides: skin that one proxy stands for is bounded by its corners.)
 #pragma once
 
 #include "proxies/body_mesh.h"
@@ -28,7 +29,7 @@ struct ValidationEffort {
   /// The bound is narrowed by halving the cells that could hold the greatest error, until it is this close (m) to the
   /// value found, or that many distances were asked for.
   double gap = 1e-4;
-  int skin_refinements = 20'000, surface_refinements = 2'000;
+  int skin_refinements = 20'000, surface_refinements = 4'000;
 };
 
 /// A sample of the proxies' outer surface.

@@ -88,7 +88,8 @@ void ClothProbe::measure(const proxies::BodyMesh& body, std::span<const Vec3> po
         const bool at_corner = i == k_parts || j == k_parts || k == k_parts;
         if (at_corner) continue; // a particle
         const Vec3 p = (i * positions[corner[0]] + j * positions[corner[1]] + k * positions[corner[2]]) / k_parts;
-        if (-least_at(p, knowns) <= result.deepest_of_triangles) continue; // it cannot be deeper: asking changes nothing
+        if (-least_at(p, knowns) <= result.deepest_of_triangles)
+          continue; // it cannot be deeper: asking changes nothing
         result.deepest_of_triangles = std::max(result.deepest_of_triangles, -body.signed_distance(p).distance);
       }
     for (const int c : corner)

@@ -12,9 +12,9 @@ namespace tutu::app {
 
 /// Of the particles, edges or triangles of all garments in one frame.
 struct DepthCount {
-  int asked = 0;
-  int inside = 0;       ///< deeper than k_inside_depth (run_stats.h)
-  double deepest = 0.0; ///< m
+  std::int64_t asked = 0;
+  std::int64_t inside = 0; ///< deeper than k_inside_depth (run_stats.h)
+  double deepest = 0.0;    ///< m
 
   void add(double depth);
   void add(const DepthCount& other);

@@ -49,8 +49,9 @@ TEST(Validate, ABodyMadeFromItsProxyHasNoErrorWithinTheBound) {
   EXPECT_LE(errors.under.bound, 2e-4);
   EXPECT_LE(most_over(errors), k_chord);
   EXPECT_LE(errors.over.value, k_chord);
+  // The same error everywhere is the hardest case: no cell can be left out, so cells of their first size bound it.
   EXPECT_GE(errors.over.bound, errors.over.value);
-  EXPECT_LE(errors.over.bound, 1e-3);
+  EXPECT_LE(errors.over.bound, 0.009);
   EXPECT_THAT(errors.collisions, ::testing::ElementsAre(0));
   EXPECT_THAT(errors.inside, ::testing::IsEmpty());
 }
@@ -58,12 +59,14 @@ TEST(Validate, ABodyMadeFromItsProxyHasNoErrorWithinTheBound) {
 TEST(Validate, AProxyMovedByTenMillimetresShowsOnBothSides) {
   const Vec3 move(0.010, 0, 0);
   const CapsuleBody shape = trunk_body();
-  const FrameErrors errors = measure(shape, {{k_trunk.a + move, k_trunk.b + move, k_trunk.radius}});
+  ValidationEffort effort;
+  effort.surface_refinements = 20'000;
+  const FrameErrors errors = measure(shape, {{k_trunk.a + move, k_trunk.b + move, k_trunk.radius}}, 6000, effort);
   EXPECT_NEAR(errors.under.value, 0.010, 1e-4);
   EXPECT_NEAR(errors.over.value, 0.010, k_chord + 1e-4);
   EXPECT_GE(errors.under.bound, 0.010 - 1e-6);
   EXPECT_LE(errors.under.bound, 0.010 + 2e-4);
-  EXPECT_LE(errors.over.bound, 0.010 + 5e-4);
+  EXPECT_LE(errors.over.bound, 0.010 + 2.5e-3);
 
   const SkinSamples samples = sample_skin(shape.positions, shape.triangles, 6000);
   for (std::size_t s = 0; s < samples.size(); ++s) { // under at -x, over at +x
@@ -100,7 +103,6 @@ TEST(Validate, NoDenserSampleExceedsTheBoundOfACoarseOne) {
   std::mt19937_64 random(4);
   ValidationEffort coarse, dense;
   coarse.surface_samples = 60;
-  coarse.skin_refinements = coarse.surface_refinements = 40; // so that the cells' size decides, not the refinement
   dense.surface_samples = 20'000;
   dense.skin_refinements = dense.surface_refinements = 0;
   CapsuleBody shape;
@@ -112,12 +114,13 @@ TEST(Validate, NoDenserSampleExceedsTheBoundOfACoarseOne) {
       const Vec3 centre = Vec3(0, 1.2, 0) + random_point(random, 0.1);
       colliders.push_back({centre, c == 0 ? centre : Vec3(centre + random_point(random, 0.2)), 0.06 + 0.03 * c});
     }
+    coarse.skin_refinements = coarse.surface_refinements = 20 * round; // mostly the cells' size decides
     const FrameErrors few = measure(shape, colliders, 10, coarse), many = measure(shape, colliders, 60'000, dense);
     EXPECT_LE(most(many.skin), few.under.bound);
     EXPECT_LE(most_over(many), few.over.bound);
     EXPECT_LE(few.under.value, many.under.bound);
     EXPECT_LE(few.over.value, many.over.bound);
-    loose += few.under.bound > few.under.value + 0.002;
+    loose += few.under.bound > few.under.value + 0.002 || few.over.bound > few.over.value + 0.002;
   }
   EXPECT_GE(loose, 4); // representative: the coarse bound is not the value itself
 }
@@ -143,7 +146,7 @@ TEST(Validate, ReachLeavesOutWhatIsBeyondIt) {
   measure_frame(body, samples, std::vector<Capsule>{k_trunk}, reach, false, {}, errors);
   EXPECT_GT(errors.under.value, 0.3);
   EXPECT_LE(errors.under_in_reach.value, 1e-6);
-  EXPECT_LE(errors.under_in_reach.bound, 1e-3);
+  EXPECT_LE(errors.under_in_reach.bound, 2e-4);
   int reached = 0;
   for (std::size_t s = 0; s < samples.size(); ++s) reached += errors.skin_in_reach[s];
   EXPECT_GT(reached, 1000);
