@@ -15,6 +15,7 @@ namespace {
 /// distance from the region that does), how far the cell reaches, and what else bounds the error in it.
 struct Probe {
   double error = 0.0, outside = 0.0, radius = 0.0;
+  bool in_reach = true; ///< the middle is: told, not asked about
   double ceiling = std::numeric_limits<double>::infinity();
 
   bool counts() const { return outside <= 0.0; }
@@ -28,7 +29,7 @@ public:
   explicit BoundSearch(double gap) : gap_(gap) {}
 
   void add(const Cell& cell, const Probe& probe) {
-    if (probe.counts()) best_ = std::max(best_, probe.error);
+    take(probe);
     open_.push_back({cell, probe.upper()});
   }
 
@@ -49,7 +50,7 @@ public:
       open_.pop_back();
       split(node.cell, [&](const Cell& part, const Probe& probe) {
         ++probes;
-        if (probe.counts()) best_ = std::max(best_, probe.error);
+        take(probe);
         // The whole bounds its parts too.
         open_.push_back({part, std::min(node.upper, probe.upper())});
         std::push_heap(open_.begin(), open_.end(), lower);
@@ -59,12 +60,22 @@ public:
     return {best_, std::max(best_, settled)};
   }
 
+  /// Whether the greatest error that was found is in reach: then it is the greatest in reach too.
+  bool best_in_reach() const { return best_in_reach_; }
+
 private:
   struct Node {
     Cell cell;
     double upper;
   };
+  void take(const Probe& probe) {
+    if (!probe.counts() || probe.error < best_) return;
+    best_ = probe.error;
+    best_in_reach_ = probe.in_reach;
+  }
+
   double gap_, best_ = 0.0;
+  bool best_in_reach_ = false;
   std::vector<Node> open_;
 };
 
@@ -128,6 +139,7 @@ void measure_skin(const BodyMesh& body, const SkinSamples& samples, const Capsul
       const double scale = (turned ? -1.0 : 1.0) / parts;
       const SkinCell cell{p + scale * (a - middle), p + scale * (b - middle), p + scale * (c - middle)};
       Probe probe = probe_of(cell, proxies, nearest);
+      probe.in_reach = outside <= 0.0;
       all.add(cell, probe);
       if (reach.everything) continue;
       probe.outside = outside;
@@ -139,13 +151,16 @@ void measure_skin(const BodyMesh& body, const SkinSamples& samples, const Capsul
       for (const SkinCell& part : cell.quarters()) {
         const Vec3 p = part.middle();
         Probe probe = probe_of(part, proxies, proxies.nearest(p));
-        if (within_reach) probe.outside = reach.outside(p);
+        const double outside = reach.outside(p);
+        probe.in_reach = outside <= 0.0;
+        if (within_reach) probe.outside = outside;
         visit(part, probe);
       }
     };
   };
   errors.under = all.run(effort.skin_refinements, split(false));
-  errors.under_in_reach = reach.everything ? errors.under : reached.run(effort.skin_refinements, split(true));
+  errors.under_in_reach =
+      reach.everything || all.best_in_reach() ? errors.under : reached.run(effort.skin_refinements, split(true));
 }
 
 void measure_surface(const BodyMesh& body, std::span<const Capsule> colliders, const CapsuleUnion& proxies,
@@ -164,6 +179,7 @@ void measure_surface(const BodyMesh& body, std::span<const Capsule> colliders, c
     if (probe.outside > probe.radius) continue; // all of it is
     probe.error = body.signed_distance(p).distance;
     const double outside = reach.outside(p);
+    probe.in_reach = outside <= 0.0;
     if (probe.counts()) errors.surface.push_back({cell.capsule, surface.area(cell), probe.error, outside <= 0.0});
     all.add(cell, probe);
     if (reach.everything) continue;
@@ -176,14 +192,17 @@ void measure_surface(const BodyMesh& body, std::span<const Capsule> colliders, c
       for (const SurfaceCell& part : surface.halves(cell)) {
         const Vec3 p = surface.middle(part);
         Probe probe{0.0, buried(part, p), surface.radius(part)};
-        if (within_reach) probe.outside = std::max(probe.outside, reach.outside(p));
+        const double outside = reach.outside(p);
+        probe.in_reach = outside <= 0.0;
+        if (within_reach) probe.outside = std::max(probe.outside, outside);
         if (probe.outside <= probe.radius) probe.error = body.signed_distance(p).distance;
         visit(part, probe);
       }
     };
   };
   errors.over = all.run(effort.surface_refinements, split(false));
-  errors.over_in_reach = reach.everything ? errors.over : reached.run(effort.surface_refinements, split(true));
+  errors.over_in_reach =
+      reach.everything || all.best_in_reach() ? errors.over : reached.run(effort.surface_refinements, split(true));
 }
 
 } // namespace

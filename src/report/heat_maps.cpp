@@ -6,7 +6,6 @@
 #include "src/scene/posed_body.h"
 #include "src/scene/proxy_error.h"
 
-#include <numbers>
 #include <optional>
 
 namespace tutu::app {
@@ -24,6 +23,7 @@ std::vector<HeatMap> heat_maps(const Scene& scene, const std::vector<int>& frame
   std::vector<HeatMap> maps;
   PosedBody body(scene);
   ProxyErrorColours colours;
+  std::vector<Vec3f> turned, turned_normals;
   for (const int frame : frames) {
     body.pose_at(frame / static_cast<double>(scene.description.frames_per_second));
     FrameView view;
@@ -36,12 +36,20 @@ std::vector<HeatMap> heat_maps(const Scene& scene, const std::vector<int>& frame
     view.ground = scene.description.ground_height.has_value();
     view.ground_height = static_cast<float>(scene.description.ground_height.value_or(0.0));
     view.error_scale = scale;
-    const auto from = [&](double yaw) {
-      constexpr float k_pitch = 0.08f; // rad: a little of the floor
-      return png_bytes(
-          offscreen->draw(view, frame_camera(body.positions(), static_cast<float>(yaw), k_pitch, offscreen->aspect())));
+    const auto picture = [&] {
+      constexpr float k_yaw = 0.0f, k_pitch = 0.08f; // rad: from the front, a little of the floor
+      return png_bytes(offscreen->draw(view, frame_camera(skin.positions, k_yaw, k_pitch, offscreen->aspect())));
     };
-    maps.push_back({frame, from(0.0), from(std::numbers::pi)});
+    HeatMap map{frame, picture(), {}};
+    // The body turns, not the camera: the studio's light comes from the front, and white shall look white.
+    turned.assign(body.positions().begin(), body.positions().end());
+    turned_normals.assign(body.normals().begin(), body.normals().end());
+    for (auto* points : {&turned, &turned_normals})
+      for (Vec3f& p : *points) p = Vec3f(-p.x(), p.y(), -p.z());
+    view.surfaces[0].positions = skin.positions = turned;
+    view.surfaces[0].normals = turned_normals;
+    map.back = picture();
+    maps.push_back(std::move(map));
     if (!go_on()) break;
   }
   return maps;

@@ -44,7 +44,7 @@ svg .small{font-size:10px}
 table{border-collapse:collapse;width:100%;font-size:.9rem;font-variant-numeric:tabular-nums}
 th,td{padding:.3rem .6rem;text-align:right;white-space:nowrap;border-bottom:1px solid #eceef1}
 th:first-child,td:first-child{text-align:left;position:sticky;left:0;background:#fff}
-td.name{text-align:left;color:#59616e}
+.name{text-align:left;color:#59616e}
 thead th{color:#59616e;font-weight:600}
 details{margin:.8rem 0}summary{cursor:pointer;font-weight:600}
 @media print{.tile,figure,.scroll{box-shadow:none;border:1px solid #ddd}}
@@ -153,7 +153,7 @@ std::string table(const char* first, const std::vector<GroupErrors>& groups, boo
   std::string html = fmt::format(
       "<div class=\"scroll\"><table><thead><tr><th>{}</th>{}<th>skin %</th><th>under mean</th><th>p95</th><th>max</th>"
       "<th>over mean</th><th>p95</th><th>max</th></tr></thead><tbody>\n",
-      first, with_joint ? "<th>joint</th>" : "");
+      first, with_joint ? "<th class=\"name\">joint</th>" : "");
   for (const int k : worst_first(groups)) {
     const GroupErrors& g = groups[k];
     const auto side = [&](const proxies::ErrorFigures& f, const char* colour) {
@@ -295,7 +295,9 @@ std::string validation_html(const Validation& v, const Scene& scene, const std::
   html += "<h2>Proxies, the worst first</h2>\n<p class=\"soft\">mm. Under: of the skin that is nearest to the "
           "proxy.</p>\n" +
           table("proxy", v.proxies, true);
-  html += "<h2>Regions of the body</h2>\n" + table("region", v.regions, false);
+  std::vector<GroupErrors> regions = v.regions;
+  regions.push_back(v.core);
+  html += "<h2>Regions of the body</h2>\n" + table("region", regions, false);
   html += "<h2>Joints, the worst first</h2>\n<p class=\"soft\">Skin belongs to the joint with most of its weight, a "
           "proxy to the joint that carries most of it.</p>\n" +
           table("joint", v.joints, false);

@@ -201,6 +201,7 @@ ordered_json validation_json(const Validation& validation, const Scene& scene, c
                       {"only_body", 1000.0 * validation.only_body_volume},
                       {"only_proxies", 1000.0 * validation.only_proxies_volume}};
   if (validation.in_reach) json["in_reach"] = json_of(*validation.in_reach);
+  json["core"] = json_of(validation.core);
   json["proxies"] = groups_json(validation.proxies);
   json["joints"] = groups_json(validation.joints);
   json["regions"] = groups_json(validation.regions);
@@ -250,7 +251,9 @@ std::string validation_text(const Validation& validation, const Scene& scene, co
                       mm(validation.hausdorff()), mm(validation.hausdorff_bound()), validation.volume_ratio(),
                       1000.0 * validation.body_volume);
   constexpr std::size_t k_lines = 8;
-  text += groups_text("regions", validation.regions, rig::k_region_names.size());
+  std::vector<GroupErrors> regions = validation.regions;
+  regions.push_back(validation.core);
+  text += groups_text("regions", regions, regions.size());
   text += groups_text("worst proxies", validation.proxies, k_lines);
   text += groups_text("worst joints", validation.joints, k_lines);
   if (!validation.worst_frames.empty()) {

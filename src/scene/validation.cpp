@@ -32,6 +32,10 @@ proxies::BodyMesh body_of(const Scene& scene) {
   }
 }
 
+bool is_core(rig::BodyRegion region) {
+  return region != rig::BodyRegion::head && region != rig::BodyRegion::hands && region != rig::BodyRegion::feet;
+}
+
 /// Everything of a sample that no pose changes, as indices into groups.
 struct SkinGroups {
   std::vector<int> joint, region; ///< [sample]
@@ -205,6 +209,7 @@ private:
       by_proxy_[errors.nearest[s]].under.add(under, area);
       by_joint_[groups_.joint[s]].under.add(under, area);
       by_region_[groups_.region[s]].under.add(under, area);
+      if (is_core(regions_[groups_.joint[s]])) core_.under.add(under, area);
     }
     for (const proxies::SurfaceError& e : errors.surface) {
       const double over = std::max(0.0, e.distance);
@@ -215,6 +220,7 @@ private:
       by_proxy_[e.collider].over.add(over, e.area);
       by_joint_[joint].over.add(over, e.area);
       by_region_[static_cast<int>(regions_[joint])].over.add(over, e.area);
+      if (is_core(regions_[joint])) core_.over.add(over, e.area);
     }
     whole_.add_bounds(errors.under, errors.over);
     reached_.add_bounds(errors.under_in_reach, errors.over_in_reach);
@@ -258,6 +264,7 @@ private:
     const auto group = [&](const PairGatherer& g, std::string name, std::string joint) {
       return GroupErrors{std::move(name), std::move(joint), g.figures(), g.under.weight() / area};
     };
+    result_.core = group(core_, "all but head, hands, feet", "");
     std::size_t collider = 0;
     for (const proxies::Proxy& proxy : scene_->proxies) {
       if (!proxy.enabled || collider >= by_proxy_.size()) continue;
@@ -325,6 +332,7 @@ private:
   std::vector<ClothProbe> probes_;
   ClothRun cloth_;
   WholeGatherer whole_, reached_;
+  PairGatherer core_;
   std::vector<PairGatherer> by_proxy_, by_joint_, by_region_;
   proxies::ErrorGatherer particle_depths_;
   Validation result_;

@@ -64,7 +64,8 @@ struct Validation {
   int skin_samples = 0;
   double buried_share = 0.0; ///< of the mesh's area: inside the body in the bind pose, left out
   WholeErrors whole;
-  std::optional<WholeErrors> in_reach;               ///< with garments
+  std::optional<WholeErrors> in_reach; ///< with garments
+  GroupErrors core;                    ///< all but head, hands and feet: what few proxies can be asked to follow
   std::vector<GroupErrors> proxies, joints, regions; ///< proxies in their order, joints that have skin, regions
   double body_volume = 0.0, proxies_volume = 0.0;    ///< m3, mean over the frames
   double only_body_volume = 0.0, only_proxies_volume = 0.0;
