@@ -119,7 +119,7 @@ void measure_skin(const BodyMesh& body, const SkinSamples& samples, const Capsul
   errors.skin.resize(samples.size());
   errors.nearest.resize(samples.size());
   errors.skin_in_reach.resize(samples.size());
-  BoundSearch<SkinCell> all(effort.gap), reached(effort.gap);
+  BoundSearch<SkinCell> all(effort.skin_gap), reached(effort.skin_gap);
   for (std::size_t s = 0; s < samples.size();) {
     const int triangle = samples.samples[s].triangle;
     const rig::Triangle& t = triangles[triangle];
@@ -167,7 +167,7 @@ void measure_surface(const BodyMesh& body, std::span<const Capsule> colliders, c
                      const Reach& reach, const ValidationEffort& effort, FrameErrors& errors) {
   std::vector<CapsuleSurface> surfaces(colliders.begin(), colliders.end());
   errors.surface.clear();
-  BoundSearch<SurfaceCell> all(effort.gap), reached(effort.gap);
+  BoundSearch<SurfaceCell> all(effort.surface_gap), reached(effort.surface_gap);
   /// How deep the point is buried in other proxies: <= 0 on the outer surface.
   const auto buried = [&](const SurfaceCell& cell, const Vec3& p) {
     return -proxies.distance_without(p, static_cast<std::size_t>(cell.capsule));

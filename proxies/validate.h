@@ -28,7 +28,7 @@ struct ValidationEffort {
   int surface_samples = 4000; ///< on the proxies, buried ones included
   /// The bound is narrowed by halving the cells that could hold the greatest error, until it is this close (m) to the
   /// value found, or that many distances were asked for.
-  double gap = 1e-4;
+  double skin_gap = 1e-4, surface_gap = 5e-4; ///< asking the mesh costs far more than asking capsules
   int skin_refinements = 20'000, surface_refinements = 4'000;
 };
 

@@ -131,8 +131,8 @@ TEST(Validate, TheSearchReachesItsGap) {
   ValidationEffort effort;
   effort.surface_refinements = 20'000;
   const FrameErrors errors = measure(shape, {{{0.02, 1.05, 0}, {-0.01, 1.3, 0.02}, 0.1}}, 100, effort);
-  EXPECT_LE(errors.under.bound - errors.under.value, effort.gap * 1.000001);
-  EXPECT_LE(errors.over.bound - errors.over.value, effort.gap * 1.000001);
+  EXPECT_LE(errors.under.bound - errors.under.value, effort.skin_gap * 1.000001);
+  EXPECT_LE(errors.over.bound - errors.over.value, effort.surface_gap * 1.000001);
 }
 
 TEST(Validate, ReachLeavesOutWhatIsBeyondIt) {
