@@ -26,7 +26,8 @@ void ContactSearch::find_candidates(proxies::CollisionQuery& query, const Partic
   particle_travel_.assign(particles.positions.size(), 0.0);
   // Of proxies, the ground, which stays at 0, and the true body.
   collider_travel_.assign(static_cast<std::size_t>(colliders_.body_index()) + 1, 0.0);
-  particle_way_.resize(particles.positions.size(), 0.0);
+  particle_way_.resize(particles.positions.size(), Vec3::Zero());
+  in_body_.resize(particles.positions.size(), 0);
   seen_at_ = particles.positions;
   ++counts_.searches;
   counts_.candidates += static_cast<std::int64_t>(candidates_.colliders.size());
@@ -48,18 +49,22 @@ void ContactSearch::place(proxies::CollisionQuery& query, double s) {
   collider_travel_[colliders_.body_index()] += since_before_ * body_way_;
 }
 
-double ContactSearch::most_push(int particle, int collider) const {
-  if (collider != colliders_.body_index()) return std::numeric_limits<double>::infinity();
-  return particle_way_[particle] + since_before_ * (body_way_ + k_push_out_speed * seconds_);
+double ContactSearch::bounded_push(int particle, int collider, const proxies::Contact& contact) {
+  const double needed = offset_ - contact.distance;
+  if (collider != colliders_.body_index()) return needed;
+  const double speed_step = since_before_ * (body_way_ + k_push_out_speed * seconds_);
+  const double most = in_body_[particle] ? std::max(0.0, speed_step - particle_way_[particle].dot(contact.normal))
+                                         : particle_way_[particle].norm() + speed_step;
+  in_body_[particle] = most < needed;
+  return std::min(needed, most);
 }
 
 void ContactSearch::account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned,
                                    const Particles& particles) {
   double farthest = 0.0;
   for (int i = 0; i < particles.count(); ++i) {
-    const double way = (particles.positions[i] - seen_at_[i]).norm();
-    particle_way_[i] = way;
-    particle_travel_[i] += way;
+    particle_way_[i] = particles.positions[i] - seen_at_[i];
+    particle_travel_[i] += particle_way_[i].norm();
     seen_at_[i] = particles.positions[i];
     if (!pinned[i]) farthest = std::max(farthest, particle_travel_[i]);
   }

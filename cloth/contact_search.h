@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -19,8 +18,8 @@ namespace tutu::cloth {
 /// point and in the collider's motion, so a pair at distance d stays apart until particle and collider together have
 /// travelled d.
 ///
-/// The true body is pushed out of at no more than the particle's and the surface's own motion and k_push_out_speed
-/// besides: cloth that begins inside is worked out of it, not thrown.
+/// Out of the true body a particle is pushed in one substep by no more than both have moved, and k_push_out_speed
+/// besides; where that is not enough it began inside, and from then on comes out at that speed: it is not thrown.
 class ContactSearch {
 public:
   /// `offset`: what particles keep from every surface, m >= 0 (Fabric::contact_offset).
@@ -47,7 +46,7 @@ private:
   void find_candidates(proxies::CollisionQuery& query, const Particles& particles);
   void place(proxies::CollisionQuery& query, double s);
   void account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned, const Particles& particles);
-  double most_push(int particle, int collider) const;
+  double bounded_push(int particle, int collider, const proxies::Contact& contact);
 
   double offset_ = 0.0;
   double margin_ = 0.0;                         ///< m a particle may go before candidates are found anew
@@ -58,9 +57,10 @@ private:
   std::vector<double> wake_;                              ///< per candidate pair: travelled sum at which it may touch
   std::vector<double> particle_travel_, collider_travel_; ///< m since the candidates were found
   std::vector<Vec3> seen_at_;                             ///< where each particle was when it last reported its travel
-  std::vector<double> particle_way_;                      ///< m in this substep
-  double body_way_ = 0.0, seconds_ = 0.0;                 ///< m that the true body's fastest vertex goes in the frame
-  const proxies::CollisionQuery* query_ = nullptr;        ///< that colliders were last placed in
+  std::vector<Vec3> particle_way_;                        ///< m in this substep
+  std::vector<std::uint8_t> in_body_;              ///< whether the last push left a particle inside the true body
+  double body_way_ = 0.0, seconds_ = 0.0;          ///< m that the true body's fastest vertex goes in the frame
+  const proxies::CollisionQuery* query_ = nullptr; ///< that colliders were last placed in
   ContactCounts counts_;
 };
 
@@ -79,9 +79,10 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
       ++counts_.queries;
       if (contact.distance >= offset_) {
         wake_[pair] = travelled + (contact.distance - offset_) - k_travel_slack;
+        if (collider == colliders_.body_index()) in_body_[i] = 0;
         continue;
       }
-      on_contact(i, collider, contact, std::min(offset_ - contact.distance, most_push(i, collider)));
+      on_contact(i, collider, contact, bounded_push(i, collider, contact));
       particle_travel_[i] += (particles.positions[i] - seen_at_[i]).norm();
       seen_at_[i] = particles.positions[i];
       ++counts_.contacts;
@@ -96,7 +97,7 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
       const proxies::Contact contact = query.contact(particles.positions[i], collider);
       ++counts_.queries;
       if (contact.distance >= offset_) continue;
-      on_contact(i, collider, contact, std::min(offset_ - contact.distance, most_push(i, collider)));
+      on_contact(i, collider, contact, bounded_push(i, collider, contact));
       ++counts_.contacts;
     }
   }
