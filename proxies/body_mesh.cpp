@@ -18,10 +18,16 @@ namespace {
 constexpr double k_on_surface = 1e-10;
 constexpr double k_anywhere = std::numeric_limits<double>::infinity();
 
-/// Parts of the surface seen from more than k_beta of their radii count as dipoles in the winding number; where that
-/// comes within k_doubt of 1/2 it is summed exactly.
-constexpr double k_beta = 2.0;
-constexpr double k_doubt = 0.2;
+/// Parts of the surface seen from more than `beta` of their radii count as dipoles in the winding number. It was found
+/// to be wrong by at most `error` then (0.148, 0.087, 0.041 and 0.022 at 1.5, 2, 3 and 4; dancer, humans, from 2 cm to
+/// 30 cm).
+struct Precision {
+  double beta, error;
+};
+/// Where a whole number must come out.
+constexpr double k_whole_beta = 1.5;
+/// Where any may: the next one is asked where 1/2 is within the error, and in the end the exact sum.
+constexpr Precision k_any[] = {{2.0, 0.2}, {4.0, 0.05}};
 
 } // namespace
 
@@ -31,8 +37,8 @@ BodyMesh::BodyMesh(std::span<const Vec3f> bind_positions, std::span<const rig::T
   for (const Vec3f& p : bind_positions) positions_.push_back(p.cast<double>());
   topology_ = std::make_unique<MeshTopology>(find_topology(bind_positions, triangles));
   tree_ = std::make_unique<MeshTree>(positions_, triangles_);
-  MeshFindings found =
-      take_census(positions_, triangles_, *topology_, [&](const Vec3& p) { return tree_->winding_number(p, k_beta); });
+  MeshFindings found = take_census(positions_, triangles_, *topology_,
+                                   [&](const Vec3& p) { return tree_->winding_number(p, k_whole_beta); });
   census_ = std::move(found.census);
   is_closed_ = census_.open_edges == 0 && census_.nonmanifold_edges == 0 && census_.turned_triangles == 0;
   if (census_.inner_shells == 0) return;
@@ -106,8 +112,12 @@ bool BodyMesh::is_inside(const Vec3& point) const {
 }
 
 bool BodyMesh::winds_around(const Vec3& point) const {
-  const double about = tree_->winding_number(point, k_beta);
-  return (std::abs(about - 0.5) > k_doubt ? about : winding_number(point)) > 0.5;
+  if (is_closed_) return tree_->winding_number(point, k_whole_beta) > 0.5;
+  for (const Precision& precision : k_any) {
+    const double about = tree_->winding_number(point, precision.beta);
+    if (std::abs(about - 0.5) > precision.error) return about > 0.5;
+  }
+  return winding_number(point) > 0.5;
 }
 
 Contact BodyMesh::signed_distance(const Vec3& point) const {

@@ -1,5 +1,7 @@
 #include "src/scene/session.h"
 
+#include "rig/error.h"
+
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
@@ -23,6 +25,17 @@ private:
 };
 
 constexpr double k_ground_friction = 0.5; // Coulomb: cloth on a wooden stage
+constexpr double k_skin_friction = 0.3;   // Coulomb: as proxies have it unless they say otherwise
+
+std::unique_ptr<proxies::CollisionQuery> query_of(const Scene& scene) {
+  if (scene.description.backend != proxies::Backend::mesh) return proxies::make_query(scene.description.backend);
+  const rig::Mesh& mesh = scene.character.mesh;
+  try {
+    return proxies::make_mesh_query(proxies::BodyMesh(mesh.positions, mesh.triangles));
+  } catch (const std::invalid_argument& unusable) {
+    throw InputError(scene.character.file + ": " + unusable.what(), "", "", "");
+  }
+}
 
 std::optional<proxies::Plane> ground_of(const SceneDescription& description) {
   if (!description.ground_height) return std::nullopt;
@@ -66,15 +79,18 @@ Session::Session(const Scene& scene)
     garments_.emplace_back(cloth::make_solver(garment, options), garment);
     pins_start_.emplace_back(garment.pins.size());
     pins_end_.emplace_back(garment.pins.size());
-    queries_.push_back(proxies::make_query(scene.description.backend));
+    queries_.push_back(query_of(scene));
   }
   garment_frames_.resize(garments_.size());
   if (threads_ > 1) arena_ = std::make_unique<tbb::task_arena>(threads_);
-  for (const proxies::Proxy& proxy : colliders_.proxies()) friction_.push_back(proxy.friction);
+  if (!collides_with_body())
+    for (const proxies::Proxy& proxy : colliders_.proxies()) friction_.push_back(proxy.friction);
   friction_.push_back(k_ground_friction);
+  friction_.push_back(k_skin_friction);
   troubles_.first_recoveries.reserve(SessionTroubles::k_kept);
   // The rest pose until somebody starts the clip: garments are built around it.
   colliders_.reset(world_);
+  reset_body();
   place_pins(pins_end_);
 }
 
@@ -98,6 +114,7 @@ void Session::start(const std::vector<std::vector<Vec3>>& garment_positions) {
   pose_at(0.0);
   start_world_ = world_;
   colliders_.reset(world_);
+  reset_body();
   place_pins(pins_end_);
   for (std::size_t g = 0; g < garments_.size(); ++g) garments_[g].reset(garment_positions[g]);
 }
@@ -109,6 +126,7 @@ void Session::jump(double time) {
   failure_.reset();
   pose_at(time);
   colliders_.reset(world_);
+  reset_body();
   place_pins(pins_end_);
   if (failed)
     for (std::size_t g = 0; g < garments_.size(); ++g) garments_[g].reset(start_positions_[g]);
@@ -156,12 +174,15 @@ void Session::advance_to(std::span<const Transform> local, double extra_drag) {
   world_before_ = world_;
   rig::model_from_local(scene_->character.skeleton, local_, world_);
   times_.pose = watch.lap();
+  follow_body();
+  watch.lap();
   colliders_.advance(world_);
   pins_start_.swap(pins_end_);
   place_pins(pins_end_);
   if (has_jumped()) {
     ++troubles_.teleports;
     colliders_.reset(world_);
+    body_start_ = body_end_;
     for (std::size_t g = 0; g < garments_.size(); ++g) pins_start_[g] = pins_end_[g];
     carry_along(world_before_);
   }
@@ -198,7 +219,7 @@ void Session::advance_garment(std::size_t g, double extra_drag) {
   cloth::GuardedSolver& solver = garments_[g];
   GarmentFrame& frame = garment_frames_[g];
   cloth::FrameInput input;
-  input.colliders = colliders_.swept();
+  input.colliders = colliders_.swept(); // of the true body, too, they tell how many substeps are needed
   input.friction = friction_;
   input.pins_start = pins_start_[g];
   input.pins_end = pins_end_[g];
@@ -213,6 +234,7 @@ void Session::advance_garment(std::size_t g, double extra_drag) {
     input.substeps = frame.plan.substeps;
     frame.planning = watch.lap();
   }
+  if (collides_with_body()) input.colliders = {{}, {}, colliders_.ground(), {}, body_start_, body_end_};
   frame.divergence = solver.step(input, *queries_[g]);
 }
 
@@ -245,6 +267,18 @@ void Session::note_split(std::size_t g, const cloth::SubstepPlan& plan) {
   troubles_.worst_split_frame = frame_;
   troubles_.worst_split_reason =
       scene_->garments[g].name + ": " + plan.reason(colliders_.proxies()[plan.collider].name);
+}
+
+void Session::follow_body() {
+  if (!collides_with_body()) return;
+  body_start_.swap(body_end_);
+  skin_body();
+  body_end_ = body_positions_;
+}
+
+void Session::reset_body() {
+  follow_body();
+  body_start_ = body_end_;
 }
 
 void Session::skin_body() {

@@ -56,7 +56,7 @@ std::vector<Vec3> points_about(const BodyMesh& body, int count, std::uint64_t se
 void expect_as_brute_force(const Surface& surface, int count) {
   const BodyMesh body = body_of(surface);
   const BruteMesh brute(body.positions(), body.triangles());
-  int inside = 0, on_inner_shells = 0;
+  int inside = 0, on_inner_shells = 0, asked = 0;
   for (const Vec3& point : points_about(body, count, 1)) {
     const double distance = brute.distance(point);
     const std::optional<MeshPoint> found = body.nearest(point, k_anywhere);
@@ -68,7 +68,10 @@ void expect_as_brute_force(const Surface& surface, int count) {
     EXPECT_LT((on - found->closest).norm(), 1e-14);
     EXPECT_GE(found->weights.minCoeff(), 0.0);
 
-    const double winding = brute.winding_number(point);
+    const double winding = body.winding_number(point); // exact: every triangle's solid angle
+    if (asked++ % 20 == 0) {
+      EXPECT_NEAR(winding, brute.winding_number(point), 1e-6) << point.transpose();
+    }
     if (body.census().open_edges == 0) {
       EXPECT_NEAR(winding, std::round(winding), 1e-6) << point.transpose();
     }
@@ -96,19 +99,25 @@ TEST(BodyMesh, ClosedSurfaceIsAsBruteForce) {
   const Surface spiky = spiky_surface(random), torus = torus_surface(0.5, 0.2, 24, 12);
   EXPECT_EQ(body_of(spiky).census().rule, SideRule::pseudonormal);
   EXPECT_EQ(body_of(torus).census().rule, SideRule::pseudonormal);
-  expect_as_brute_force(spiky, 10000);
-  expect_as_brute_force(torus, 10000);
+  expect_as_brute_force(spiky, 1000);
+  expect_as_brute_force(torus, 1000);
+}
+
+TEST(BodyMesh, ClosedSurfaceIsAsBruteForce_slow) {
+  std::mt19937_64 random(2);
+  expect_as_brute_force(spiky_surface(random), 10000);
+  expect_as_brute_force(torus_surface(0.5, 0.2, 24, 12), 10000);
 }
 
 TEST(BodyMesh, DancerIsAsBruteForce) {
-  expect_as_brute_force(surface_of(source_file("assets/characters/dancer.dae")), 60);
+  expect_as_brute_force(surface_of(source_file("assets/characters/dancer.dae")), 45);
 }
 
 TEST(BodyMesh, DancerIsAsBruteForce_slow) {
   expect_as_brute_force(surface_of(source_file("assets/characters/dancer.dae")), 10000);
 }
 
-TEST(BodyMesh, OpenHumanIsAsBruteForce) { expect_as_brute_force(surface_of(assimp_model("X/BCN_Epileptic.X")), 300); }
+TEST(BodyMesh, OpenHumanIsAsBruteForce) { expect_as_brute_force(surface_of(assimp_model("X/BCN_Epileptic.X")), 150); }
 
 TEST(BodyMesh, OpenHumanIsAsBruteForce_slow) {
   expect_as_brute_force(surface_of(assimp_model("X/BCN_Epileptic.X")), 10000);
@@ -232,8 +241,9 @@ TEST(BodyMesh, ARefittedTreeAnswersAsAFreshOne) {
     }
     moved.pose(posed.positions);
     const BodyMesh fresh = body_of(posed);
-    for (const Vec3& point : points_about(fresh, 500, static_cast<std::uint64_t>(frame))) {
-      EXPECT_EQ(moved.nearest(point, k_anywhere)->distance, fresh.nearest(point, k_anywhere)->distance);
+    for (const Vec3& point : points_about(fresh, 200, static_cast<std::uint64_t>(frame))) {
+      // Of two triangles that share the nearest edge either may be found, a rounding apart.
+      EXPECT_NEAR(moved.nearest(point, k_anywhere)->distance, fresh.nearest(point, k_anywhere)->distance, 1e-14);
       EXPECT_EQ(moved.is_inside(point), fresh.is_inside(point));
       EXPECT_EQ(moved.winding_number(point), fresh.winding_number(point));
     }

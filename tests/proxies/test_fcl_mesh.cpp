@@ -39,8 +39,8 @@ std::vector<Vec3> shaken(const Surface& surface, std::mt19937_64& random) {
 }
 
 proxies::Capsule random_capsule(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> radius(0.02, 0.4);
-  const Vec3 a = random_point(random, 1.3);
+  std::uniform_real_distribution<double> radius(0.02, 0.25);
+  const Vec3 a = random_point(random, 0.9);
   return {a, random() % 3 == 0 ? a : Vec3(a + random_point(random, 0.5)), radius(random)};
 }
 
