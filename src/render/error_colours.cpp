@@ -86,8 +86,8 @@ void draw_error_bar(const ErrorScale& scale, Image& image) {
   for (const auto& [value, label] : error_ticks(scale)) {
     const int x = left + static_cast<int>(std::lround(0.5 * (1.0 + value / scale.full) * (width - 1)));
     blend_box(image, x, top, 1, height + 2 * zoom, ink, 0.8f);
-    const int text =
-        std::clamp(x - text_width(label, zoom) / 2, left - 2 * margin, image.width - text_width(label, zoom));
+    const int wide = text_width(label, zoom), first = left - 2 * margin + zoom;
+    const int text = std::clamp(x - wide / 2, first, left + width + 2 * margin - zoom - wide);
     draw_text(image, text, top + height + zoom, label, zoom, ink);
   }
 }

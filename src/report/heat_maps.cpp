@@ -6,6 +6,7 @@
 #include "src/scene/posed_body.h"
 #include "src/scene/proxy_error.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace tutu::app {
@@ -23,7 +24,7 @@ std::vector<HeatMap> heat_maps(const Scene& scene, const std::vector<int>& frame
   std::vector<HeatMap> maps;
   PosedBody body(scene);
   ProxyErrorColours colours;
-  std::vector<Vec3f> turned, turned_normals;
+  std::vector<Vec3f> turned, turned_normals, shown;
   for (const int frame : frames) {
     body.pose_at(frame / static_cast<double>(scene.description.frames_per_second));
     FrameView view;
@@ -36,9 +37,15 @@ std::vector<HeatMap> heat_maps(const Scene& scene, const std::vector<int>& frame
     view.ground = scene.description.ground_height.has_value();
     view.ground_height = static_cast<float>(scene.description.ground_height.value_or(0.0));
     view.error_scale = scale;
+    // Below the feet there is room for the bar.
+    constexpr float k_bar = 0.14f; // of the body's extent upwards
     const auto picture = [&] {
       constexpr float k_yaw = 0.0f, k_pitch = 0.08f; // rad: from the front, a little of the floor
-      return png_bytes(offscreen->draw(view, frame_camera(skin.positions, k_yaw, k_pitch, offscreen->aspect())));
+      shown.assign(skin.positions.begin(), skin.positions.end());
+      const auto lower = [](const Vec3f& p, const Vec3f& q) { return p.y() < q.y(); };
+      const auto [lowest, highest] = std::minmax_element(shown.begin(), shown.end(), lower);
+      shown.push_back(*lowest - k_bar * (highest->y() - lowest->y()) * Vec3f::UnitY());
+      return png_bytes(offscreen->draw(view, frame_camera(shown, k_yaw, k_pitch, offscreen->aspect())));
     };
     HeatMap map{frame, picture(), {}};
     // The body turns, not the camera: the studio's light comes from the front, and white shall look white.

@@ -75,11 +75,18 @@ std::string svg_of(const Plot& plot) {
   svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", k_width - k_right, k_height - 5,
                      html_escaped(plot.x_name));
   svg += fmt::format("<text x=\"4\" y=\"{}\">{}</text>\n", k_height - 5, html_escaped(plot.y_name));
-  for (const PlotMark& mark : plot.marks)
+  std::vector<PlotMark> marks = plot.marks;
+  std::sort(marks.begin(), marks.end(), [](const PlotMark& x, const PlotMark& y) { return x.x < y.x; });
+  double label_end = 0.0, label_y = k_top + 7; // labels that would touch go down a line
+  for (const PlotMark& mark : marks) {
+    constexpr double k_digit = 6.5, k_line = 10;
+    label_y = axes.px(mark.x) < label_end ? label_y + k_line : k_top + 7;
+    label_end = axes.px(mark.x) + 4 + k_digit * static_cast<double>(mark.label.size());
     svg += fmt::format(
         "<line class=\"mark\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/><text class=\"small\" "
         "x=\"{3:.1f}\" y=\"{4}\">{5}</text>\n",
-        axes.px(mark.x), k_top, k_height - k_bottom, axes.px(mark.x) + 2, k_top + 7, html_escaped(mark.label));
+        axes.px(mark.x), k_top, k_height - k_bottom, axes.px(mark.x) + 2, label_y, html_escaped(mark.label));
+  }
   if (plot.level > 0.0)
     svg += fmt::format(
         "<line class=\"level\" x1=\"{0}\" x2=\"{1}\" y1=\"{2:.1f}\" y2=\"{2:.1f}\"/><text class=\"small\" "
