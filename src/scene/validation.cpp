@@ -28,7 +28,7 @@ proxies::BodyMesh body_of(const Scene& scene) {
   try {
     return {scene.character.mesh.positions, scene.character.mesh.triangles};
   } catch (const std::invalid_argument& error) {
-    throw InputError(scene.character.file, "mesh", error.what(), "a body with an inside and an outside");
+    throw InputError(scene.character.file, error.what(), "", ""); // says what was found and expected
   }
 }
 
