@@ -69,7 +69,7 @@ void apply_character(unsigned character, ViewerState& state) {
 void draw_layers(ViewerState& state) {
   for (const LayerKey& layer : k_layer_keys) {
     ImGui::Checkbox(layer.label, &(state.layers.*layer.layer));
-    ImGui::SameLine(ImGui::GetFontSize() * 8);
+    ImGui::SameLine(ImGui::GetFontSize() * 9);
     ImGui::TextDisabled("%c", layer.key - 'a' + 'A');
   }
 }
@@ -123,7 +123,7 @@ void draw_error_scale(const ErrorScale& scale) {
   ImGui::SetNextWindowPos({0.5f * screen.x, k_margin}, ImGuiCond_Always, {0.5f, 0.0f});
   ImGui::Begin("error", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
   ImGui::TextUnformatted(k_over_caption);
-  ImGui::SameLine(width - ImGui::CalcTextSize(k_under_caption).x);
+  ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + width - ImGui::CalcTextSize(k_under_caption).x);
   ImGui::TextUnformatted(k_under_caption);
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   const ImVec2 corner = ImGui::GetCursorScreenPos();
