@@ -15,6 +15,7 @@ constexpr double k_flat = 1e-10; ///< a triangle's area as a share of its longes
 constexpr double k_least_volume = 1e-5;
 /// So large a share of area or volume may be turned over before the mesh is refused: an eye, not a limb.
 constexpr double k_turned_share = 0.01;
+constexpr double k_off_surface = 1e-6; ///< how far off a triangle its sides are looked at, as a share of sqrt(area)
 constexpr std::size_t k_shell_samples = 256; ///< vertices of a shell that are asked whether others hold it
 
 [[noreturn]] void refuse(const std::string& found, const std::string& expected) {
@@ -73,6 +74,16 @@ public:
       if (others <= 0.5) return false;
     }
     return true;
+  }
+
+  /// Triangles whose outer side is inside: where a closed shell passes through itself.
+  int buried(double height, const std::function<double(const Vec3&)>& winding) const {
+    int count = 0;
+    for (int t = 0; t < static_cast<int>(t_.size()); ++t) {
+      const Vec3 normal = (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
+      count += winding((corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3.0 + height * normal) > 0.5;
+    }
+    return count;
   }
 
 private:
@@ -153,6 +164,12 @@ MeshFindings take_census(std::span<const Vec3> positions, std::span<const rig::T
                " of the volume turned inside out",
            "triangles that run counter-clockwise seen from outside");
   choose_rule(census);
+  if (census.rule == SideRule::winding_number) return found;
+  const int buried = mesh.buried(k_off_surface * std::sqrt(census.area), winding);
+  if (buried == 0) return found;
+  census.rule = SideRule::winding_number;
+  census.reason = "one closed shell that passes through itself (" +
+                  count_of(buried, "triangle inside the body)", "triangles inside the body)");
   return found;
 }
 

@@ -18,12 +18,6 @@ Scene dance() {
   return load_scene(description);
 }
 
-std::vector<std::vector<Vec3>> rest_of(const Scene& scene) {
-  std::vector<std::vector<Vec3>> positions;
-  for (const cloth::Garment& garment : scene.garments) positions.push_back(garment.rest_positions);
-  return positions;
-}
-
 /// How deep free particles are in the body as it is drawn, by a tree of its own and exact winding numbers, m.
 double deepest_in_body(Session& session) {
   const Scene& scene = session.scene();
@@ -50,10 +44,8 @@ TEST(MeshBackend, NoParticleIsInTheTrueBody) {
   const Scene scene = dance();
   Session session(scene);
   EXPECT_EQ(session.backend(), "mesh");
-  session.start(rest_of(scene));
-  std::vector<Transform> local = scene.character.skeleton.rest_local;
-  session.advance_to(local, 4.0); // the garments were built around this pose; start() took the clip's
-  for (int frame = 0; frame < 3; ++frame) {
+  std::vector<Transform> local = scene.character.skeleton.rest_local; // where the garments were built
+  for (int frame = 0; frame < 2; ++frame) {
     local[0].translation.z() += 0.01;
     session.advance_to(local, 4.0);
     EXPECT_LT(deepest_in_body(session), 1e-6);

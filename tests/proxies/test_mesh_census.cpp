@@ -77,6 +77,17 @@ TEST(MeshCensus, OpenOverlappingAndSeveralShellsGoToTheWindingNumber) {
   EXPECT_EQ(census_of(apart).reason, "2 shells");
 }
 
+TEST(MeshCensus, AShellThatPassesThroughItselfGoesToTheWindingNumber) {
+  Surface limb = torus_surface(0.5, 0.2, 48, 24);
+  for (Vec3f& p : limb.positions) // a ring, flattened until its near and far side overlap
+    p.x() = p.x() > 0.0f ? p.x() - 0.4f : p.x() + 0.4f;
+  const BodyMesh body(limb.positions, limb.triangles);
+  EXPECT_EQ(body.census().rule, SideRule::winding_number);
+  EXPECT_THAT(body.census().reason, HasSubstr("one closed shell that passes through itself ("));
+  EXPECT_NEAR(body.winding_number({0.0, 0.01, 0.02}), 2.0, 1e-9);
+  EXPECT_TRUE(body.is_inside({0.0, 0.01, 0.02}));
+}
+
 TEST(MeshCensus, ACavityIsNoInvertedShell) {
   Surface hollow = sphere_surface(0.3, 3);
   append(hollow, inside_out(sphere_surface(0.1, 2)));

@@ -17,15 +17,25 @@ public:
   using Vec3r = Eigen::Matrix<Real, 3, 1>;
 
   BruteMesh(std::span<const Vec3> positions, std::span<const rig::Triangle> triangles) {
-    for (const rig::Triangle& t : triangles)
-      corners_.push_back({positions[t[0]].cast<Real>(), positions[t[1]].cast<Real>(), positions[t[2]].cast<Real>()});
+    for (const rig::Triangle& t : triangles) {
+      const Vec3 &a = positions[t[0]], &b = positions[t[1]], &c = positions[t[2]];
+      corners_.push_back({a.cast<Real>(), b.cast<Real>(), c.cast<Real>()});
+      balls_.push_back({a, 1.001 * std::max((b - a).norm(), (c - a).norm())});
+    }
   }
 
-  /// The least of: the plane's distance where the foot is inside by its three edges, and the distances from the edges.
+  /// The least over all triangles (but those whose ball about the first corner is farther) of: the plane's distance
+  /// where the foot is inside by its three edges, and the distances from the edges.
   double distance(const Vec3& point) const {
     const Vec3r p = point.cast<Real>();
     Real least = std::numeric_limits<Real>::infinity();
-    for (const auto& t : corners_) least = std::min(least, distance_squared(p, t));
+    double limit = std::numeric_limits<double>::infinity(); // a little above the least distance
+    for (std::size_t i = 0; i < corners_.size(); ++i) {
+      const double beyond = limit + balls_[i].radius;
+      if ((point - balls_[i].centre).squaredNorm() > beyond * beyond) continue;
+      least = std::min(least, distance_squared(p, corners_[i]));
+      limit = 1.001 * static_cast<double>(std::sqrt(least));
+    }
     return static_cast<double>(std::sqrt(least));
   }
 
@@ -62,7 +72,13 @@ private:
     return std::min(least, height * height / normal.squaredNorm());
   }
 
+  struct Ball {
+    Vec3 centre;
+    double radius;
+  };
+
   std::vector<std::array<Vec3r, 3>> corners_;
+  std::vector<Ball> balls_; ///< each holds its triangle
 };
 
 } // namespace tutu::test
