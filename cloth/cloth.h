@@ -21,6 +21,7 @@
 #include "cloth/mesh_xpbd.h"         // IWYU pragma: export
 #include "cloth/metrics.h"           // IWYU pragma: export
 #include "cloth/particles.h"         // IWYU pragma: export
+#include "cloth/reach.h"             // IWYU pragma: export
 #include "cloth/recovery.h"          // IWYU pragma: export
 #include "cloth/solver.h"            // IWYU pragma: export
 #include "cloth/spatial_hash.h"      // IWYU pragma: export

@@ -17,6 +17,9 @@ namespace tutu::cloth {
 /// Pairs that cannot have met since they were last asked are skipped, exactly: signed distance is 1-Lipschitz in the
 /// point and in the collider's motion, so a pair at distance d stays apart until particle and collider together have
 /// travelled d.
+///
+/// Out of the true body a particle is pushed in one substep by no more than both have moved, and k_push_out_speed
+/// besides; where that is not enough it began inside, and from then on comes out at that speed: it is not thrown.
 class ContactSearch {
 public:
   /// `offset`: what particles keep from every surface, m >= 0 (Fabric::contact_offset).
@@ -43,6 +46,7 @@ private:
   void find_candidates(proxies::CollisionQuery& query, const Particles& particles);
   void place(proxies::CollisionQuery& query, double s);
   void account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned, const Particles& particles);
+  double bounded_push(int particle, int collider, const proxies::Contact& contact);
 
   double offset_ = 0.0;
   double margin_ = 0.0;                         ///< m a particle may go before candidates are found anew
@@ -53,6 +57,10 @@ private:
   std::vector<double> wake_;                              ///< per candidate pair: travelled sum at which it may touch
   std::vector<double> particle_travel_, collider_travel_; ///< m since the candidates were found
   std::vector<Vec3> seen_at_;                             ///< where each particle was when it last reported its travel
+  std::vector<Vec3> particle_way_;                        ///< m in this substep
+  std::vector<std::uint8_t> in_body_;              ///< whether the last push left a particle inside the true body
+  double body_way_ = 0.0, seconds_ = 0.0;          ///< m that the true body's fastest vertex goes in the frame
+  const proxies::CollisionQuery* query_ = nullptr; ///< that colliders were last placed in
   ContactCounts counts_;
 };
 
@@ -71,23 +79,25 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
       ++counts_.queries;
       if (contact.distance >= offset_) {
         wake_[pair] = travelled + (contact.distance - offset_) - k_travel_slack;
+        if (collider == colliders_.body_index()) in_body_[i] = 0;
         continue;
       }
-      on_contact(i, collider, contact, offset_ - contact.distance);
+      on_contact(i, collider, contact, bounded_push(i, collider, contact));
       particle_travel_[i] += (particles.positions[i] - seen_at_[i]).norm();
       seen_at_[i] = particles.positions[i];
       ++counts_.contacts;
     }
     if (particle_travel_[i] <= margin_) continue;
     // Pushed out of reach of what was looked for: ask the others too, this once. The next substep searches anew.
-    const int colliders = colliders_.size() + (colliders_.ground ? 1 : 0);
     const std::span<const int> asked = candidates_.of(i);
-    for (int collider = 0; collider < colliders; ++collider) {
+    for (int collider = 0; collider <= colliders_.body_index(); ++collider) {
+      if (collider == colliders_.ground_index() && !colliders_.ground) continue;
+      if (collider == colliders_.body_index() && !colliders_.has_body()) continue;
       if (std::binary_search(asked.begin(), asked.end(), collider)) continue;
       const proxies::Contact contact = query.contact(particles.positions[i], collider);
       ++counts_.queries;
       if (contact.distance >= offset_) continue;
-      on_contact(i, collider, contact, offset_ - contact.distance);
+      on_contact(i, collider, contact, bounded_push(i, collider, contact));
       ++counts_.contacts;
     }
   }

@@ -15,9 +15,13 @@ bool all_finite(std::span<const proxies::Capsule> capsules) {
                      [](const proxies::Capsule& c) { return tutu::is_finite(c.a) && tutu::is_finite(c.b); });
 }
 
+bool all_finite(std::span<const Vec3f> points) {
+  return std::all_of(points.begin(), points.end(), [](const Vec3f& p) { return p.allFinite(); });
+}
+
 bool is_finite(const FrameInput& input) {
   return all_finite(input.pins_start) && all_finite(input.pins_end) && all_finite(input.colliders.start) &&
-         all_finite(input.colliders.end) && all_finite(input.colliders.spin);
+         all_finite(input.colliders.end) && all_finite(input.colliders.spin) && all_finite(input.colliders.body_end);
 }
 
 } // namespace
@@ -81,6 +85,7 @@ void GuardedSolver::jump(FrameInput& input) {
   input.pins_start = input.pins_end;
   input.colliders.start = input.colliders.end;
   input.colliders.spin = {};
+  input.colliders.body_start = input.colliders.body_end;
 }
 
 std::optional<Divergence> GuardedSolver::step(const FrameInput& input, proxies::CollisionQuery& query) {

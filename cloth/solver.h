@@ -17,7 +17,8 @@ namespace tutu::cloth {
 /// Everything outside the garment during one frame.
 struct FrameInput {
   proxies::SweptColliders colliders;
-  std::span<const double> friction; ///< Coulomb coefficient of each collider, the ground last; empty: none anywhere
+  /// Coulomb coefficient of each collider, then the ground, then the true body; empty: none anywhere.
+  std::span<const double> friction;
   std::span<const Vec3> pins_start, pins_end; ///< targets in the order of Garment::pins, world, m
   double seconds = 1.0 / 60.0;
   int substeps = 5;                 ///< >= 1

@@ -19,9 +19,14 @@ struct SweptColliders {
   /// Rotation vector of each collider from start to end, world, rad: what its surface does that its two ends do not
   /// show (a sphere has one point only). Empty: none of them turns.
   std::span<const Vec3> spin = {};
+  /// The true body, for the backend that collides with it: its vertices at both ends of the frame, world, m. They go on
+  /// straight lines. Empty: there is none.
+  std::span<const Vec3f> body_start = {}, body_end = {};
 
   int size() const { return static_cast<int>(start.size()); }
   int ground_index() const { return size(); }
+  bool has_body() const { return !body_start.empty(); }
+  int body_index() const { return size() + 1; } ///< whether there is a ground or not
 };
 
 /// The colliders at `s` in [0, 1] of the frame, each as capsule_at has it. `out` has size() entries.

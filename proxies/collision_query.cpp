@@ -260,6 +260,7 @@ Backend backend_named(std::string_view name) {
 }
 
 std::unique_ptr<CollisionQuery> make_query(Backend backend) {
+  if (backend == Backend::mesh) throw std::invalid_argument("the backend mesh needs a body");
   if (backend == Backend::brute) return std::make_unique<BruteQuery>();
   if (backend == Backend::hybrid) return std::make_unique<HybridQuery>();
   return std::make_unique<FclQuery>();

@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   add_play(app, status);
   add_drape(app, status);
   add_inspect(app, status);
+  add_validate(app, status);
   add_mannequin(app, status);
   add_bench(app, status);
   try {

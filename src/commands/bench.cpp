@@ -188,7 +188,7 @@ void add_bench(CLI::App& app, int& status) {
   command->add_option("--substeps", options->substeps, "Substeps a frame; as many as the solver needs when left out")
       ->check(CLI::Range(1, 10000));
   command->add_option("--backend", options->backend, "How particles ask colliders")
-      ->check(one_of(proxies::k_backend_names))
+      ->check(one_of(proxies::k_proxy_backend_names))
       ->capture_default_str();
   command->add_option("--features", options->features, "What of the cloth meets colliders")
       ->check(one_of(cloth::k_contact_features_names))

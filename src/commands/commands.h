@@ -16,5 +16,6 @@ void add_drape(CLI::App& app, int& status);
 void add_inspect(CLI::App& app, int& status);
 void add_mannequin(CLI::App& app, int& status);
 void add_play(CLI::App& app, int& status);
+void add_validate(CLI::App& app, int& status);
 
 } // namespace tutu::app

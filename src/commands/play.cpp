@@ -7,6 +7,7 @@
 #include "src/interrupt.h"
 #include "src/progress.h"
 #include "src/render/offscreen.h"
+#include "src/scene/posed_body.h"
 #include "src/scene/run_stats.h"
 #include "src/scene/scene_player.h"
 #include "src/viewer/viewer.h"
@@ -22,8 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int k_most_frames = 10'000'000; // 46 hours of dance
-
 struct Options {
   SceneOptions scene;
   bool headless = false, no_pictures = false, fixed_substeps = false;
@@ -31,6 +30,9 @@ struct Options {
   std::string out, json;
   std::vector<int> at;
   std::vector<std::string> show, hide;
+  std::optional<std::string> overlay;
+  double tolerance_mm = 1000.0 * ErrorScale().tolerance;
+  bool worst = false;
   std::string size = "1280x720";
   int supersample = 1;
   double yaw_degrees = 25.0, pitch_degrees = 8.0;
@@ -41,9 +43,10 @@ void check(const Options& options) {
   const fs::path out = options.out;
   const std::string suffix = out.extension().string();
   const std::vector<std::string> pictures = {".png", ".jpg", ".jpeg", ".gif", ".avi", ".mov", ".mkv", ".webm"};
-  if (!options.at.empty() && suffix == ".mp4") throw InputError("", "--out", options.out, "a folder for the pictures");
+  if ((!options.at.empty() || options.worst) && suffix == ".mp4") throw InputError("", "--out", options.out, "a folder for the pictures");
   if (std::find(pictures.begin(), pictures.end(), suffix) != pictures.end())
     throw InputError("", "--out", options.out, "a film (.mp4) or a folder");
+  if (options.worst && options.frames) throw InputError("", "--worst", "it with --frames", "one of the two");
   if (!options.at.empty() && options.no_pictures)
     throw InputError("", "--at", "it with --no-pictures", "one of the two");
   for (const int frame : options.at)
@@ -67,15 +70,6 @@ std::pair<int, int> size_of(const std::string& text) {
   return {width, height};
 }
 
-/// Once through the motion.
-int frames_of(const Scene& scene) {
-  const double frames = std::round(scene.clip.duration() * scene.description.frames_per_second);
-  if (!(frames <= k_most_frames))
-    throw InputError(scene.description.file.string(), "/motion", fmt::format("{:.6g} frames", frames),
-                     fmt::format("at most {}, or --frames", k_most_frames));
-  return std::max(1, static_cast<int>(frames));
-}
-
 const std::vector<std::pair<std::string, bool Layers::*>> k_layers = {
     {"body", &Layers::body},           {"cloth", &Layers::cloth},         {"ground", &Layers::ground},
     {"wireframe", &Layers::wireframe}, {"particles", &Layers::particles}, {"skeleton", &Layers::skeleton},
@@ -96,6 +90,7 @@ Layers layers_of(const Options& options) {
   };
   set(options.show, true);
   set(options.hide, false);
+  layers.proxy_error = options.overlay.has_value();
   return layers;
 }
 
@@ -111,6 +106,7 @@ public:
     camera_ = frame_camera(motion_points(scene), radians(options.yaw_degrees), radians(options.pitch_degrees),
                            offscreen_->aspect());
     view_.emplace(scene);
+    view_->set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
 
     out_ = options.out;
     const bool film = at_.empty() && (out_.empty() ? ffmpeg_available() : out_.extension() == ".mp4");
@@ -192,17 +188,41 @@ int play_headless(const Options& options, const Scene& scene, const std::vector<
   return diverged || interrupted() ? k_not_met : k_ok;
 }
 
+/// The frame that --worst asks for, told; none when interrupted.
+std::optional<int> find_worst(const Scene& scene) {
+  Progress bar("looking for the worst frame", frames_of(scene));
+  const std::optional<int> frame = worst_frame(scene, [&](int done, int) {
+    bar.tick(done);
+    return !interrupted();
+  });
+  bar.finish();
+  if (frame) fmt::print("the skin sticks out of the proxies the most in frame {}\n", *frame);
+  return frame;
+}
+
 int run(const Options& options) {
   const bool headless = options.headless || !options.json.empty() || !options.at.empty() || !display_available();
   check(options);
   if (headless) catch_interrupt();
   Scene scene = options.scene.load();
   if (options.fixed_substeps) scene.description.adaptive_substeps = false;
+  if ((options.overlay || options.worst) && scene.proxies.empty())
+    throw InputError(scene.description.file.string(), "/proxies", "none", "proxies to show the error of");
   const auto start = draped_start(scene);
   if (!start) return k_not_met;
+  if (headless && options.worst) {
+    const std::optional<int> frame = find_worst(scene);
+    if (!frame) return k_not_met;
+    Options at_worst = options;
+    at_worst.at.push_back(*frame);
+    return play_headless(at_worst, scene, *start);
+  }
   if (headless) return play_headless(options, scene, *start);
   ScenePlayer player(scene, *start);
+  player.set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
   ViewerOptions viewer;
+  viewer.layers = layers_of(options);
+  viewer.start_at_worst = options.worst;
   return run_viewer(player, viewer);
 }
 
@@ -227,6 +247,17 @@ void add_play(CLI::App& app, int& status) {
   command->add_option("--hide", options->hide, "Layers not to show")
       ->delimiter(',')
       ->check(CLI::IsMember(layer_names()));
+  command
+      ->add_option("--overlay", options->overlay,
+                   "proxy-error: the skin in the colours of its distance from the proxies")
+      ->check(CLI::IsMember({"proxy-error"}));
+  command->add_option("--tolerance-mm", options->tolerance_mm, "Of the overlay: what is nearer than this stays white")
+      ->check(finite_number())
+      ->check(CLI::Range(0.1, 1000.0))
+      ->capture_default_str();
+  command->add_flag(
+      "--worst", options->worst,
+      "Go to the frame in which the skin sticks out of the proxies the most (headless: only its picture)");
   command->add_option("--size", options->size, "Pixels of the pictures")->capture_default_str();
   command->add_option("--supersample", options->supersample, "Draw this many times finer and average")
       ->check(CLI::Range(1, 4))

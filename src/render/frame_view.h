@@ -5,6 +5,7 @@
 #include "rig/mesh.h"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,6 +36,15 @@ struct LineView {
   Colour colour = {1, 1, 1};
 };
 
+/// What the colours of an error overlay mean (error_colours.h), m; 0 < tolerance < full.
+struct ErrorScale {
+  double tolerance = 0.01; ///< below it, either way, nothing is coloured
+  double full = 0.04;      ///< from here on the strongest colour
+
+  /// Of this tolerance: full at four times that.
+  static ErrorScale of(double tolerance) { return {tolerance, 4.0 * tolerance}; }
+};
+
 struct FrameView {
   std::vector<SurfaceView> surfaces;
   std::vector<CapsuleView> capsules; ///< drawn translucent over the surfaces
@@ -42,6 +52,7 @@ struct FrameView {
   std::vector<Vec3f> points;         ///< particles
   bool ground = true;                ///< a floor at `ground_height` with the shadow of all surfaces
   float ground_height = 0.0f;
+  std::optional<ErrorScale> error_scale; ///< surfaces' colours are errors: a picture gets a labelled bar
 };
 
 /// Looks from `eye` at `target`, +Y up.

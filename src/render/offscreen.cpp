@@ -1,5 +1,6 @@
 #include "src/render/offscreen.h"
 
+#include "src/render/error_colours.h"
 #include "src/render/gl_objects.h"
 
 #include <algorithm>
@@ -85,6 +86,7 @@ void Offscreen::draw(const FrameView& view, const Camera& camera, Image& image) 
   image.width = options_.width;
   image.height = options_.height;
   reduce(raw_, options_.supersample, image);
+  if (view.error_scale) draw_error_bar(*view.error_scale, image);
 }
 
 void reduce(const std::vector<std::uint8_t>& raw, int factor, Image& image) {

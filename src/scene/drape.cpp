@@ -93,7 +93,9 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   const SceneDescription& d = scene.description;
   add(d.ground_height ? *d.ground_height : 0.0, d.ground_height ? 1.0 : 0.0);
   add(d.frames_per_second, d.substeps, d.solver == cloth::SolverKind::xpbd ? 1.0 : 0.0);
-  if (d.self_collision) add(1.0); // without it the hash stays that of drapes made before there was any
+  // Without these the hash stays that of drapes made before there were any.
+  if (d.self_collision) add(1.0);
+  if (d.backend == proxies::Backend::mesh) add(2.0);
   return cloth::state_hash(numbers);
 }
 

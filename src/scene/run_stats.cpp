@@ -12,6 +12,16 @@ nlohmann::json json_of(const cloth::Spread& s) { return {{"max", s.max}, {"p99",
 double median_of(std::vector<double> samples) { return cloth::percentile(samples, 0.5); }
 double p99_of(std::vector<double> samples) { return cloth::percentile(samples, 0.99); }
 
+/// As cloth::penetration_of, of what the garment collided with.
+std::vector<double> depths_in_body(const Session& session, int g) {
+  const std::vector<std::uint8_t> pinned = cloth::pinned_flags(session.scene().garments[g]);
+  const std::vector<Vec3>& positions = session.garment(g).particles().positions;
+  std::vector<double> depths;
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    if (!pinned[i]) depths.push_back(std::max(0.0, -session.contact_with_body(g, positions[i]).distance));
+  return depths;
+}
+
 } // namespace
 
 void RunStats::add(const Session& session) {
@@ -23,7 +33,9 @@ void RunStats::add(const Session& session) {
   for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
     const cloth::Garment& garment = scene_->garments[g];
     const cloth::Particles& particles = session.garment(static_cast<int>(g)).particles();
-    for (const double depth : cloth::penetration_of(garment, particles, colliders.end, colliders.ground)) {
+    for (const double depth : session.collides_with_body()
+                                  ? depths_in_body(session, static_cast<int>(g))
+                                  : cloth::penetration_of(garment, particles, colliders.end, colliders.ground)) {
       depths_mm_.add(1000.0 * depth);
       inside_ += depth > k_inside_depth;
     }
@@ -44,23 +56,24 @@ void RunStats::add(const Session& session) {
 nlohmann::json RunStats::json(const Session& session) const {
   nlohmann::json ms;
   for (const Stage& stage : stages_) ms[stage.name] = {{"median", median_of(stage.ms)}, {"p99", p99_of(stage.ms)}};
-  nlohmann::json result = {{"scene", scene_->name()},
-                           {"frames", frames_},
-                           {"seed", 0}, // nothing in a run is random
-                           {"solver", name_of(scene_->description.solver)},
-                           {"substeps", substeps_json(session)},
-                           {"backend", session.backend()},
-                           {"threads", session.threads()},
-                           {"ms_per_frame", ms},
-                           {"penetration_mm", {{"proxies", json_of(depths_mm_.spread())}}},
-                           {"share_inside", static_cast<double>(inside_) /
-                                                static_cast<double>(std::max<std::int64_t>(1, depths_mm_.count()))},
-                           {"stretch", json_of(stretch())},
-                           {"jitter", jitters_.spread().mean},
-                           {"diverged", session.failure().has_value()},
-                           {"recoveries", session.troubles().recoveries},
-                           {"teleports", session.troubles().teleports},
-                           {"state_hash", fmt::format("{:016x}", session.state_hash())}};
+  nlohmann::json result = {
+      {"scene", scene_->name()},
+      {"frames", frames_},
+      {"seed", 0}, // nothing in a run is random
+      {"solver", name_of(scene_->description.solver)},
+      {"substeps", substeps_json(session)},
+      {"backend", session.backend()},
+      {"threads", session.threads()},
+      {"ms_per_frame", ms},
+      {"penetration_mm", {{session.collides_with_body() ? "body" : "proxies", json_of(depths_mm_.spread())}}},
+      {"share_inside",
+       static_cast<double>(inside_) / static_cast<double>(std::max<std::int64_t>(1, depths_mm_.count()))},
+      {"stretch", json_of(stretch())},
+      {"jitter", jitters_.spread().mean},
+      {"diverged", session.failure().has_value()},
+      {"recoveries", session.troubles().recoveries},
+      {"teleports", session.troubles().teleports},
+      {"state_hash", fmt::format("{:016x}", session.state_hash())}};
   for (const SessionRecovery& recovery : session.troubles().first_recoveries)
     result["first_recoveries"].push_back(recovery.message());
   if (session.failure()) result["failure"] = session.failure()->message();
@@ -95,11 +108,11 @@ std::string RunStats::text(const Session& session) const {
   for (const Stage& stage : stages_)
     text += fmt::format("  {} {:.3f} ({:.3f})", stage.name, median_of(stage.ms), p99_of(stage.ms));
   const cloth::Spread depth = depths_mm_.spread(), stretch = this->stretch();
-  text += fmt::format("\ninto proxies: {:.2f} mm at most, {:.3f} mean   threads longer by {:.1f} % at most, {:.1f} "
+  text += fmt::format("\ninto {}: {:.2f} mm at most, {:.3f} mean   threads longer by {:.1f} % at most, {:.1f} "
                       "p99, off by {:.1f} mean   "
                       "jitter: {:.2f} m/s2\nstate hash {:016x}\n",
-                      depth.max, depth.mean, 100 * stretch.max, 100 * stretch.p99, 100 * stretch.mean,
-                      jitters_.spread().mean, session.state_hash());
+                      session.collides_with_body() ? "the body" : "proxies", depth.max, depth.mean, 100 * stretch.max,
+                      100 * stretch.p99, 100 * stretch.mean, jitters_.spread().mean, session.state_hash());
   const SessionTroubles& troubles = session.troubles();
   if (troubles.frames_split > 0)
     text += fmt::format("{} frames in more substeps than asked, at most {} in frame {} ({})\n", troubles.frames_split,

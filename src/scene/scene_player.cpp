@@ -29,6 +29,13 @@ std::vector<StageTime> ScenePlayer::stage_times() const {
           {"cloth", t.cloth}, {"contact", t.contact}, {"skin", t.skin}};
 }
 
+std::optional<double> ScenePlayer::worst_time() {
+  if (!worst_time_)
+    if (const auto frame = worst_frame(*scene_, [](int, int) { return true; }))
+      worst_time_ = *frame * session_.frame_seconds();
+  return worst_time_;
+}
+
 FrameView ScenePlayer::view(const Layers& layers) {
   if (layers.body && !skinned_) {
     session_.skin_body();

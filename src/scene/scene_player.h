@@ -11,6 +11,8 @@ public:
   /// `start`: the garments' draped positions. The scene must outlive it.
   ScenePlayer(const Scene& scene, std::vector<std::vector<Vec3>> start);
 
+  void set_error_scale(const ErrorScale& scale) { view_.set_error_scale(scale); }
+
   void restart() override;
   bool step() override;
   void seek(double time) override;
@@ -20,6 +22,7 @@ public:
   std::string title() const override { return scene_->name(); }
   std::string message() const override { return session_.failure() ? session_.failure()->message() : ""; }
   std::vector<StageTime> stage_times() const override;
+  std::optional<double> worst_time() override;
   FrameView view(const Layers& layers) override;
 
 private:
@@ -28,6 +31,7 @@ private:
   Session session_;
   SceneView view_;
   bool skinned_ = false; ///< the body is skinned at the session's present pose
+  std::optional<double> worst_time_;
 };
 
 } // namespace tutu::app

@@ -8,7 +8,8 @@ constexpr Colour k_orange = {0.791f, 0.347f, 0.0f};
 constexpr Colour k_sky = {0.093f, 0.457f, 0.815f};
 constexpr Colour k_vermilion = {0.665f, 0.112f, 0.0f};
 
-void add_body(const Session& session, FrameView& view, bool wireframe) {
+/// `colours`: one a vertex in the place of the parts' own, or none.
+void add_body(const Session& session, FrameView& view, bool wireframe, std::span<const Colour> colours) {
   const rig::Mesh& mesh = session.scene().character.mesh;
   for (const rig::MeshPart& part : mesh.parts) {
     SurfaceView surface;
@@ -16,6 +17,7 @@ void add_body(const Session& session, FrameView& view, bool wireframe) {
     surface.normals = session.body_normals();
     surface.triangles = std::span(mesh.triangles).subspan(part.first_triangle, part.triangle_count);
     surface.colour = part.colour;
+    surface.colours = colours;
     surface.wireframe = wireframe;
     view.surfaces.push_back(surface);
   }
@@ -69,7 +71,12 @@ FrameView SceneView::frame(const Session& session, const Layers& layers) {
   FrameView view;
   view.ground = layers.ground && session.scene().description.ground_height.has_value();
   view.ground_height = static_cast<float>(session.scene().description.ground_height.value_or(0.0));
-  if (layers.body) add_body(session, view, layers.wireframe);
+  std::span<const Colour> errors;
+  if (const auto colliders = session.colliders().swept().end; layers.proxy_error && !colliders.empty()) {
+    errors = error_colours_.update(session.body_positions(), colliders, error_scale_);
+    view.error_scale = error_scale_;
+  }
+  if (layers.body) add_body(session, view, layers.wireframe, errors);
   for (std::size_t g = 0; g < cloth_.size(); ++g) {
     const cloth::Garment& garment = session.scene().garments[g];
     const std::vector<Vec3>& particles = session.garment(static_cast<int>(g)).particles().positions;

@@ -3,6 +3,7 @@
 
 #include "src/render/camera.h"
 #include "src/render/smooth_grid.h"
+#include "src/scene/proxy_error.h"
 #include "src/scene/session.h"
 #include "src/viewer/player.h"
 
@@ -14,6 +15,9 @@ namespace tutu::app {
 class SceneView {
 public:
   explicit SceneView(const Scene& scene);
+
+  /// What layers.proxy_error shows; at first 10 mm and more.
+  void set_error_scale(const ErrorScale& scale) { error_scale_ = scale; }
 
   /// The session's present frame. With layers.body the body must have been skinned. The spans are good until the next
   /// call, and as long as the session stays as it is.
@@ -28,6 +32,8 @@ private:
   };
 
   std::vector<Sheet> cloth_;
+  ProxyErrorColours error_colours_;
+  ErrorScale error_scale_;
 };
 
 /// Points (m) around all places the scene's joints go to over the whole clip, with room for flesh and cloth: what a

@@ -1,5 +1,7 @@
 #include "src/scene/session.h"
 
+#include "rig/error.h"
+
 #include <algorithm>
 #include <chrono>
 #include <fmt/format.h>
@@ -22,6 +24,17 @@ private:
 };
 
 constexpr double k_ground_friction = 0.5; // Coulomb: cloth on a wooden stage
+constexpr double k_skin_friction = 0.3;   // Coulomb: as proxies have it unless they say otherwise
+
+std::unique_ptr<proxies::CollisionQuery> query_of(const Scene& scene) {
+  if (scene.description.backend != proxies::Backend::mesh) return proxies::make_query(scene.description.backend);
+  const rig::Mesh& mesh = scene.character.mesh;
+  try {
+    return proxies::make_mesh_query(proxies::BodyMesh(mesh.positions, mesh.triangles));
+  } catch (const std::invalid_argument& unusable) {
+    throw InputError(scene.character.file + ": " + unusable.what(), "", "", "");
+  }
+}
 
 std::optional<proxies::Plane> ground_of(const SceneDescription& description) {
   if (!description.ground_height) return std::nullopt;
@@ -54,11 +67,10 @@ std::string SessionRecovery::message() const {
 
 Session::Session(const Scene& scene)
     : scene_(&scene), local_(scene.character.skeleton.rest_local), world_(rig::rest_model(scene.character.skeleton)),
-      colliders_(scene.proxies, ground_of(scene.description)),
+      pins_(scene), colliders_(scene.proxies, ground_of(scene.description)),
       workers_(std::clamp(scene.description.threads, 1, std::max(1, static_cast<int>(scene.garments.size())))),
       palette_(scene.character.skin.slot_count()), body_positions_(scene.character.mesh.positions.size()),
       body_normals_(scene.character.mesh.positions.size()) {
-  for (const Transform& joint : world_) rest_inverse_.push_back(joint.inverse());
   cloth::SolverOptions options;
   options.kind = scene.description.solver;
   options.self_collision = scene.description.self_collision;
@@ -66,15 +78,17 @@ Session::Session(const Scene& scene)
     garments_.emplace_back(cloth::make_solver(garment, options), garment);
     pins_start_.emplace_back(garment.pins.size());
     pins_end_.emplace_back(garment.pins.size());
-    skin_pin_scratch_.emplace_back();
-    queries_.push_back(proxies::make_query(scene.description.backend));
+    queries_.push_back(query_of(scene));
   }
   garment_frames_.resize(garments_.size());
-  for (const proxies::Proxy& proxy : colliders_.proxies()) friction_.push_back(proxy.friction);
+  if (!collides_with_body())
+    for (const proxies::Proxy& proxy : colliders_.proxies()) friction_.push_back(proxy.friction);
   friction_.push_back(k_ground_friction);
+  friction_.push_back(k_skin_friction);
   troubles_.first_recoveries.reserve(SessionTroubles::k_kept);
   // The rest pose until somebody starts the clip: garments are built around it.
   colliders_.reset(world_);
+  reset_body();
   place_pins(pins_end_);
 }
 
@@ -84,15 +98,7 @@ void Session::pose_at(double time) {
 }
 
 void Session::place_pins(std::vector<std::vector<Vec3>>& targets) {
-  for (std::size_t g = 0; g < garments_.size(); ++g) {
-    const cloth::Garment& garment = scene_->garments[g];
-    for (std::size_t k = 0; k < garment.pins.size(); ++k) {
-      if (garment.attachments[garment.pins[k].attachment].skin) continue;
-      const int joint = scene_->attachment_joints[g][garment.pins[k].attachment];
-      targets[g][k] = world_[joint] * (rest_inverse_[joint] * garment.rest_positions[garment.pins[k].particle]);
-    }
-    place_on_skin(scene_->skin_pins[g], world_, skin_pin_scratch_[g], targets[g]);
-  }
+  for (std::size_t g = 0; g < garments_.size(); ++g) pins_.place(g, world_, targets[g]);
 }
 
 void Session::start(const std::vector<std::vector<Vec3>>& garment_positions) {
@@ -106,6 +112,7 @@ void Session::start(const std::vector<std::vector<Vec3>>& garment_positions) {
   pose_at(0.0);
   start_world_ = world_;
   colliders_.reset(world_);
+  reset_body();
   place_pins(pins_end_);
   for (std::size_t g = 0; g < garments_.size(); ++g) garments_[g].reset(garment_positions[g]);
 }
@@ -117,6 +124,7 @@ void Session::jump(double time) {
   failure_.reset();
   pose_at(time);
   colliders_.reset(world_);
+  reset_body();
   place_pins(pins_end_);
   if (failed)
     for (std::size_t g = 0; g < garments_.size(); ++g) garments_[g].reset(start_positions_[g]);
@@ -164,12 +172,15 @@ void Session::advance_to(std::span<const Transform> local, double extra_drag) {
   world_before_ = world_;
   rig::model_from_local(scene_->character.skeleton, local_, world_);
   times_.pose = watch.lap();
+  follow_body();
+  watch.lap();
   colliders_.advance(world_);
   pins_start_.swap(pins_end_);
   place_pins(pins_end_);
   if (has_jumped()) {
     ++troubles_.teleports;
     colliders_.reset(world_);
+    body_start_ = body_end_;
     for (std::size_t g = 0; g < garments_.size(); ++g) pins_start_[g] = pins_end_[g];
     carry_along(world_before_);
   }
@@ -198,7 +209,7 @@ void Session::advance_garment(std::size_t g, double extra_drag) {
   cloth::GuardedSolver& solver = garments_[g];
   GarmentFrame& frame = garment_frames_[g];
   cloth::FrameInput input;
-  input.colliders = colliders_.swept();
+  input.colliders = colliders_.swept(); // of the true body, too, they tell how many substeps are needed
   input.friction = friction_;
   input.pins_start = pins_start_[g];
   input.pins_end = pins_end_[g];
@@ -213,6 +224,7 @@ void Session::advance_garment(std::size_t g, double extra_drag) {
     input.substeps = frame.plan.substeps;
     frame.planning = watch.lap();
   }
+  if (collides_with_body()) input.colliders = {{}, {}, colliders_.ground(), {}, body_start_, body_end_};
   frame.divergence = solver.step(input, *queries_[g]);
 }
 
@@ -245,6 +257,18 @@ void Session::note_split(std::size_t g, const cloth::SubstepPlan& plan) {
   troubles_.worst_split_frame = frame_;
   troubles_.worst_split_reason =
       scene_->garments[g].name + ": " + plan.reason(colliders_.proxies()[plan.collider].name);
+}
+
+void Session::follow_body() {
+  if (!collides_with_body()) return;
+  body_start_.swap(body_end_);
+  skin_body();
+  body_end_ = body_positions_;
+}
+
+void Session::reset_body() {
+  follow_body();
+  body_start_ = body_end_;
 }
 
 void Session::skin_body() {

@@ -4,7 +4,7 @@
 #include "cloth/adaptive_substeps.h"
 #include "cloth/recovery.h"
 #include "proxies/collider_set.h"
-#include "src/scene/scene.h"
+#include "src/scene/garment_pins.h"
 #include "src/workers.h"
 
 #include <functional>
@@ -97,6 +97,12 @@ public:
   std::span<const Transform> world_from_joint() const { return world_; }
   const proxies::ColliderSet& colliders() const { return colliders_; }
   const cloth::Solver& garment(int g) const { return garments_[g]; } ///< in the order of Scene::garments
+  bool collides_with_body() const { return scene_->description.backend == proxies::Backend::mesh; }
+  /// Signed distance of a point from what garment `g` collided with last, at the pose of the frame's end. Only where
+  /// it collides with the body, after a frame.
+  proxies::Contact contact_with_body(int g, const Vec3& point) const {
+    return queries_[g]->contact(point, proxies::SweptColliders{}.body_index());
+  }
   std::span<const Vec3f> body_positions() const { return body_positions_; }
   std::span<const Vec3f> body_normals() const { return body_normals_; }
   std::string_view backend() const {
@@ -107,6 +113,10 @@ public:
 
 private:
   void pose_at(double time);
+  /// With the backend that collides with the true body: skins it at the present pose, which is the frame's end.
+  void follow_body();
+  /// The same where there is no motion: both ends of the frame.
+  void reset_body();
   void place_pins(std::vector<std::vector<Vec3>>& targets);
   /// The joint that carries a garment along when there is a jump.
   int holding_joint(std::size_t g) const;
@@ -126,7 +136,7 @@ private:
 
   const Scene* scene_;
   std::vector<Transform> local_, world_;
-  std::vector<Transform> rest_inverse_; ///< joint_from_model at rest
+  GarmentPins pins_;
   proxies::ColliderSet colliders_;
   std::vector<std::unique_ptr<proxies::CollisionQuery>> queries_; ///< [garment]: one serves one thread
   std::vector<cloth::GuardedSolver> garments_;
@@ -137,9 +147,10 @@ private:
   std::vector<Transform> start_world_;
   std::vector<Transform> world_before_;                  ///< at the frame's start
   std::vector<std::vector<Vec3>> pins_start_, pins_end_; ///< [garment][pin], world, m
-  std::vector<SkinPinScratch> skin_pin_scratch_;         ///< [garment]
   std::vector<rig::SkinMatrix> palette_;
   std::vector<Vec3f> body_positions_, body_normals_;
+  std::vector<Vec3f> body_start_; ///< at the frame's start; with the backend mesh only, as is:
+  std::vector<Vec3f> body_end_;
   FrameTimes times_;
   std::optional<SessionFailure> failure_;
   SessionTroubles troubles_;

@@ -1,5 +1,7 @@
 #include "src/viewer/panel.h"
 
+#include "src/render/error_colours.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -16,18 +18,19 @@ struct LayerKey {
   const char* label;
   bool Layers::*layer;
 };
-constexpr std::array<LayerKey, 7> k_layer_keys = {{{'b', "body", &Layers::body},
+constexpr std::array<LayerKey, 8> k_layer_keys = {{{'b', "body", &Layers::body},
                                                    {'c', "cloth", &Layers::cloth},
                                                    {'g', "ground", &Layers::ground},
                                                    {'w', "wireframe", &Layers::wireframe},
                                                    {'p', "particles", &Layers::particles},
                                                    {'k', "skeleton", &Layers::skeleton},
-                                                   {'x', "proxies", &Layers::proxies}}};
+                                                   {'x', "proxies", &Layers::proxies},
+                                                   {'e', "proxy error", &Layers::proxy_error}}};
 
 struct HelpLine {
   const char *keys, *what;
 };
-constexpr std::array<HelpLine, 12> k_help = {{{"Space", "play or pause"},
+constexpr std::array<HelpLine, 14> k_help = {{{"Space", "play or pause"},
                                               {".", "one frame further"},
                                               {"Home", "back to the start"},
                                               {"[  ]", "slower, faster"},
@@ -37,6 +40,8 @@ constexpr std::array<HelpLine, 12> k_help = {{{"Space", "play or pause"},
                                               {"R", "camera as at the start"},
                                               {"B C G", "body, cloth, ground"},
                                               {"W P K X", "wireframe, particles, skeleton, proxies"},
+                                              {"E", "the skin's distance from the proxies"},
+                                              {"J", "to the frame where it is worst"},
                                               {"?", "this help"},
                                               {"Esc", "quit"}}};
 
@@ -55,6 +60,7 @@ void apply_character(unsigned character, ViewerState& state) {
   if (character == '[') scale_time(state, 0.5f);
   if (character == ']') scale_time(state, 2.0f);
   if (character == 'r' || character == 'R') state.reset_camera = true;
+  if (character == 'j' || character == 'J') state.seek_worst = true;
   for (const LayerKey& layer : k_layer_keys)
     if (character == static_cast<unsigned>(layer.key) || character == static_cast<unsigned>(layer.key - 'a' + 'A'))
       state.layers.*layer.layer = !(state.layers.*layer.layer);
@@ -63,7 +69,7 @@ void apply_character(unsigned character, ViewerState& state) {
 void draw_layers(ViewerState& state) {
   for (const LayerKey& layer : k_layer_keys) {
     ImGui::Checkbox(layer.label, &(state.layers.*layer.layer));
-    ImGui::SameLine(ImGui::GetFontSize() * 8);
+    ImGui::SameLine(ImGui::GetFontSize() * 9);
     ImGui::TextDisabled("%c", layer.key - 'a' + 'A');
   }
 }
@@ -107,6 +113,38 @@ void draw_transport(const Player& player, ViewerState& state) {
                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
   ImGui::SameLine();
   ImGui::Checkbox("loop", &state.loop);
+  ImGui::End();
+}
+
+/// The bar of the error overlay, along the window's upper edge.
+void draw_error_scale(const ErrorScale& scale) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float em = ImGui::GetFontSize(), width = std::min(screen.x - 4 * k_margin, 30 * em), height = 1.1f * em;
+  ImGui::SetNextWindowPos({0.5f * screen.x, k_margin}, ImGuiCond_Always, {0.5f, 0.0f});
+  ImGui::Begin("error", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
+  ImGui::TextUnformatted(k_over_caption);
+  ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + width - ImGui::CalcTextSize(k_under_caption).x);
+  ImGui::TextUnformatted(k_under_caption);
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  constexpr int k_parts = 128;
+  const float part = width / k_parts;
+  for (int k = 0; k < k_parts; ++k) {
+    const auto rgb = error_srgb(scale, scale.full * (2.0 * (k + 0.5) / k_parts - 1.0));
+    draw.AddRectFilled({corner.x + static_cast<float>(k) * part, corner.y},
+                       {corner.x + static_cast<float>(k + 1) * part, corner.y + height},
+                       ImGui::ColorConvertFloat4ToU32({rgb[0], rgb[1], rgb[2], 1}));
+  }
+  const ImU32 ink = ImGui::GetColorU32(ImGuiCol_Text);
+  draw.AddRect(corner, {corner.x + width, corner.y + height}, ink);
+  for (const auto& [value, label] : error_ticks(scale)) {
+    const float x = corner.x + 0.5f * (1.0f + static_cast<float>(value / scale.full)) * width;
+    const float wide = ImGui::CalcTextSize(label.c_str()).x;
+    draw.AddLine({x, corner.y}, {x, corner.y + height + 3}, ink);
+    draw.AddText({std::clamp(x - 0.5f * wide, corner.x, corner.x + width - wide), corner.y + height + 3}, ink,
+                 label.c_str());
+  }
+  ImGui::Dummy({width, height + 1.3f * em});
   ImGui::End();
 }
 
@@ -182,7 +220,8 @@ void read_input(ViewerState& state) {
   for (const ImWchar character : io.InputQueueCharacters) apply_character(character, state);
 }
 
-void draw_panels(const Player& player, const SmoothTimes& times, ViewerState& state) {
+void draw_panels(const Player& player, const SmoothTimes& times, const std::optional<ErrorScale>& error_scale,
+                 ViewerState& state) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({k_margin, k_margin});
   ImGui::Begin("scene", nullptr, k_panel_flags);
@@ -198,6 +237,7 @@ void draw_panels(const Player& player, const SmoothTimes& times, ViewerState& st
   ImGui::End();
 
   draw_transport(player, state);
+  if (error_scale) draw_error_scale(*error_scale);
   draw_message(player.message());
   if (state.help) draw_help();
 }

@@ -17,7 +17,7 @@ struct ViewerState {
   bool playing = true, loop = true, help = false;
   float time_scale = 1;
   // What the user has asked for since the last frame; run_viewer does it and clears it.
-  bool step_once = false, restart = false, reset_camera = false, quit = false;
+  bool step_once = false, restart = false, reset_camera = false, quit = false, seek_worst = false;
   std::optional<double> seek; ///< s
 };
 
@@ -41,7 +41,8 @@ void set_panel_style(float scale);
 /// Keys without a character (Home, Esc) come by run_viewer's own callback.
 void read_input(ViewerState& state);
 
-/// All panels. Between ImGui::NewFrame and Render.
-void draw_panels(const Player& player, const SmoothTimes& times, ViewerState& state);
+/// All panels; with a scale also the bar of the error overlay. Between ImGui::NewFrame and Render.
+void draw_panels(const Player& player, const SmoothTimes& times, const std::optional<ErrorScale>& error_scale,
+                 ViewerState& state);
 
 } // namespace tutu::app

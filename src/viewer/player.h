@@ -3,6 +3,7 @@
 
 #include "src/render/frame_view.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace tutu::app {
 struct Layers {
   bool body = true, cloth = true, ground = true;
   bool wireframe = false, particles = false, skeleton = false, proxies = false;
+  bool proxy_error = false; ///< the skin in the colours of its distance from the proxies
 };
 
 /// Milliseconds of one stage in the last frame.
@@ -33,6 +35,8 @@ public:
   virtual std::string title() const = 0;
   virtual std::string message() const = 0; ///< "" or one sentence for the user
   virtual std::vector<StageTime> stage_times() const = 0;
+  /// s; where the skin sticks out of the proxies the most. May take seconds the first time. None without proxies.
+  virtual std::optional<double> worst_time() { return std::nullopt; }
   virtual FrameView view(const Layers& layers) = 0; ///< spans stay good until the next call of any function
 };
 

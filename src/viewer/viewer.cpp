@@ -134,6 +134,11 @@ OrbitCamera whole_view(const FrameView& view, float aspect) {
 /// Does what the user asked for and what the clock owes.
 void advance(Player& player, ViewerState& state, Pacing& pacing, double elapsed) {
   if (state.restart) player.restart();
+  if (state.seek_worst) {
+    if (const auto worst = player.worst_time()) state.seek = *worst;
+    state.playing = false;
+  }
+  state.seek_worst = false;
   if (state.seek) player.seek(*state.seek);
   if (state.restart || state.seek) pacing.forget();
   int due = 0;
@@ -182,6 +187,7 @@ int run_viewer(Player& player, const ViewerOptions& options) {
   state.layers = options.layers;
   state.time_scale = static_cast<float>(options.time_scale);
   state.playing = options.playing;
+  state.seek_worst = options.start_at_worst;
   state.loop = options.loop;
   state.reset_camera = true;
   Pacing pacing;
@@ -209,7 +215,7 @@ int run_viewer(Player& player, const ViewerOptions& options) {
     ImGui_ImplGlfw_NewFrame();
     ImGui::NewFrame();
     read_input(state);
-    draw_panels(player, times, state);
+    draw_panels(player, times, view.error_scale, state);
     ImGui::Render();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     renderer.draw(view, state.orbit.camera(), width, height);

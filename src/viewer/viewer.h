@@ -12,6 +12,7 @@ struct ViewerOptions {
   Layers layers = {};
   double time_scale = 1; ///< simulated seconds per second of the clock
   bool playing = true;
+  bool start_at_worst = false;        ///< paused, where the skin sticks out of the proxies the most
   bool loop = true;                   ///< at the end of the motion back to its start, else stop there
   std::optional<int> max_frames = {}; ///< closes by itself after that many drawn frames, for tests
 };

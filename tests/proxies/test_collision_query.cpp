@@ -32,7 +32,9 @@ TEST(CollisionQuery, NamesAreThoseOfTheCommandLine) {
   for (const std::string_view name : {"fcl", "hybrid", "brute"})
     EXPECT_EQ(make_query(backend_named(name))->name(), name);
   EXPECT_EQ(backend_named("hybrid"), Backend::hybrid);
-  EXPECT_EQ(k_backend_names.size(), k_all.size());
+  EXPECT_EQ(k_proxy_backend_names.size(), k_all.size());
+  EXPECT_EQ(backend_named("mesh"), Backend::mesh);
+  EXPECT_THROW(make_query(Backend::mesh), std::invalid_argument);
   EXPECT_THROW(backend_named("none"), std::invalid_argument);
 }
 

@@ -1,0 +1,20 @@
+// A validation as one page for people: no network, no script, readable on a phone.
+#pragma once
+
+#include "src/report/heat_maps.h"
+#include "src/report/validation_json.h"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace tutu::app {
+
+/// The whole file. `maps`: of the worst frames, embedded; without any, `no_maps` says why.
+std::string validation_html(const Validation& validation, const Scene& scene, const std::optional<Verdict>& verdict,
+                            const std::vector<HeatMap>& maps, const std::string& no_maps);
+
+/// RFC 4648.
+std::string base64(const std::string& bytes);
+
+} // namespace tutu::app
