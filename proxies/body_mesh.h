@@ -36,7 +36,7 @@ struct MeshPoint {
 
 /// How inside is told from outside.
 enum class SideRule {
-  pseudonormal,  ///< angle-weighted, of the nearest feature [Baerentzen and Aanaes 2005]: one closed surface, clear of itself
+  pseudonormal,  ///< angle-weighted, nearest feature [Baerentzen and Aanaes 2005]: one closed surface, clear of itself
   winding_number ///< generalised, above 1/2 [Jacobson et al. 2013]: open, overlapping or several surfaces
 };
 
