@@ -152,10 +152,11 @@ FitPoints sample_skin(const rig::Character& character, const std::vector<std::ve
   std::vector<std::pair<int, int>> groups;
   group(order, 0, count, result.skin, groups);
 
+  const std::vector<rig::Triangle> together = neighbours_together(rest, triangles);
   double total = 0.0;
   for (int p = 0; p < static_cast<int>(poses.size()); ++p) {
     const std::vector<Vec3> posed = skinned(character, poses[p], normals);
-    const Winding winding(posed, triangles);
+    const Winding winding(posed, together);
     for (const auto& [first, last] : groups) {
       std::vector<Vec3f> at;
       std::vector<float> weights;

@@ -8,7 +8,7 @@ namespace tutu::proxies::fit {
 namespace {
 
 constexpr int k_group = 16;      // triangles
-constexpr float k_far = 2.0f;    // a group is far from this many of its radii on
+constexpr float k_far = 1.8f;    // a group is far from this many of its radii on
 
 /// Signed solid angle of a triangle [van Oosterom and Strackee 1983, eq. 8].
 double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -17,6 +17,29 @@ double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 }
 
 } // namespace
+
+std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions, std::span<const rig::Triangle> triangles) {
+  std::vector<rig::Triangle> order(triangles.begin(), triangles.end());
+  const auto middle = [&](const rig::Triangle& t) { return Vec3(positions[t[0]] + positions[t[1]] + positions[t[2]]); };
+  std::vector<std::pair<std::size_t, std::size_t>> open = {{0, order.size()}};
+  while (!open.empty()) {
+    const auto [first, last] = open.back();
+    open.pop_back();
+    if (last - first <= k_group) continue;
+    Eigen::AlignedBox3d box;
+    for (std::size_t t = first; t < last; ++t) box.extend(middle(order[t]));
+    int axis = 0;
+    box.sizes().maxCoeff(&axis);
+    const std::size_t half = first + ((last - first) / 2 + k_group - 1) / k_group * k_group;
+    std::nth_element(order.begin() + static_cast<std::ptrdiff_t>(first), order.begin() + static_cast<std::ptrdiff_t>(half),
+                     order.begin() + static_cast<std::ptrdiff_t>(last), [&](const rig::Triangle& s, const rig::Triangle& t) {
+                       return std::pair(middle(s)[axis], s) < std::pair(middle(t)[axis], t);
+                     });
+    open.emplace_back(first, half);
+    open.emplace_back(half, last);
+  }
+  return order;
+}
 
 Winding::Winding(std::span<const Vec3> positions, std::span<const rig::Triangle> triangles)
     : positions_(positions), triangles_(triangles) {
