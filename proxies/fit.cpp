@@ -49,7 +49,8 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
 
   FitResult result;
   const auto keep_going = [&] { return !progress || progress(0.5); };
-  Search search(points, motion, guard, {}, keep_going);
+  Cost cc; if (getenv("GW")) cc.guard.weight=atof(getenv("GW")); if (getenv("GD")) cc.guard.dead=atof(getenv("GD"));
+  Search search(points, motion, guard, cc, keep_going);
   search.start(first_layout(points.skin, motion, character.skeleton));
   search.refine(10);
   while (search.shape_count() > options.count && search.shrink(search.shape_count())) {}
@@ -57,7 +58,7 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
     result.curve.push_back(curve_point(search, points.blocks));
     if (!search.grow(options.count - search.shape_count())) break;
   }
-  search.polish(12, 15);
+  if(getenv("V2")) fprintf(stderr,"before polish %g\n",search.cost()); search.polish(getenv("PR")?atoi(getenv("PR")):12, 15);if(getenv("V2")) fprintf(stderr,"after polish %g\n",search.cost());
   result.curve.push_back(curve_point(search, points.blocks));
   result.proxies = proxies_of(search.units(), motion, character.skeleton);
   return result;

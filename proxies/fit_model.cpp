@@ -157,6 +157,28 @@ void Unit::settle(const BodyMotion& motion) {
   }
 }
 
+void PosedShapes::resize() {
+  const std::size_t size = static_cast<std::size_t>(count) * poses;
+  a.resize(size);
+  b.resize(size);
+  for (std::vector<float>* v : {&ax, &ay, &az, &dx, &dy, &dz, &inverse_square, &radius}) v->resize(size);
+}
+
+void PosedShapes::set(std::size_t i, const Vec3& end_a, const Vec3& end_b, double its_radius) {
+  a[i] = end_a;
+  b[i] = end_b;
+  const Vec3 d = end_b - end_a;
+  const double squared = d.squaredNorm();
+  ax[i] = static_cast<float>(end_a.x());
+  ay[i] = static_cast<float>(end_a.y());
+  az[i] = static_cast<float>(end_a.z());
+  dx[i] = static_cast<float>(d.x());
+  dy[i] = static_cast<float>(d.y());
+  dz[i] = static_cast<float>(d.z());
+  inverse_square[i] = squared > 1e-12 ? static_cast<float>(1.0 / squared) : 0.0f;
+  radius[i] = static_cast<float>(its_radius);
+}
+
 void PosedShapes::place(std::span<const Unit> units, const BodyMotion& motion) {
   unit.clear();
   image.clear();
@@ -167,27 +189,14 @@ void PosedShapes::place(std::span<const Unit> units, const BodyMotion& motion) {
     }
   count = static_cast<int>(unit.size());
   poses = motion.poses;
-  const std::size_t size = static_cast<std::size_t>(count) * poses;
-  a.resize(size);
-  b.resize(size);
-  for (std::vector<float>* v : {&ax, &ay, &az, &dx, &dy, &dz, &inverse_square, &radius}) v->resize(size);
+  resize();
   for (int p = 0; p < poses; ++p)
     for (int s = 0; s < count; ++s) {
       const Unit& from = units[unit[s]];
       const std::size_t i = static_cast<std::size_t>(p) * count + s, f = static_cast<std::size_t>(image[s]) * poses + p;
       const Vec3 ra = image[s] ? mirrored(from.a) : from.a, rb = image[s] ? mirrored(from.b) : from.b;
-      a[i] = from.frames_a[f].leftCols<3>() * ra + from.frames_a[f].col(3);
-      b[i] = from.frames_b[f].leftCols<3>() * rb + from.frames_b[f].col(3);
-      const Vec3 d = b[i] - a[i];
-      const double squared = d.squaredNorm();
-      ax[i] = static_cast<float>(a[i].x());
-      ay[i] = static_cast<float>(a[i].y());
-      az[i] = static_cast<float>(a[i].z());
-      dx[i] = static_cast<float>(d.x());
-      dy[i] = static_cast<float>(d.y());
-      dz[i] = static_cast<float>(d.z());
-      inverse_square[i] = squared > 1e-12 ? static_cast<float>(1.0 / squared) : 0.0f;
-      radius[i] = static_cast<float>(from.radius);
+      set(i, from.frames_a[f].leftCols<3>() * ra + from.frames_a[f].col(3), from.frames_b[f].leftCols<3>() * rb + from.frames_b[f].col(3),
+          from.radius);
     }
 }
 

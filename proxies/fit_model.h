@@ -78,6 +78,8 @@ struct PosedShapes {
   std::vector<float> ax, ay, az, dx, dy, dz, inverse_square, radius; ///< the same, for the search; d = b - a
 
   void place(std::span<const Unit> units, const BodyMotion& motion);
+  void resize(); ///< everything but unit and image, to poses * count
+  void set(std::size_t i, const Vec3& end_a, const Vec3& end_b, double its_radius);
 };
 
 /// What is nearest to each lane of some blocks: signed distance and shape; and the nearest shape of another unit.

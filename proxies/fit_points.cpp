@@ -40,13 +40,13 @@ int main_joint_of(const std::map<int, float>& weight_of) {
   return std::max_element(weight_of.begin(), weight_of.end(), lighter)->first;
 }
 
-std::map<int, float> joint_weights(const rig::Character& character, const Place& place) {
+std::map<int, float> joint_weights(const rig::Character& character, const rig::Triangle& triangle, const std::array<float, 3>& weights) {
   std::map<int, float> weight_of;
   const rig::Skin& skin = character.skin;
   for (int corner = 0; corner < 3; ++corner) {
-    const std::size_t first = static_cast<std::size_t>(character.mesh.triangles[place.triangle][corner]) * skin.influences;
+    const std::size_t first = static_cast<std::size_t>(triangle[corner]) * skin.influences;
     for (int k = 0; k < skin.influences; ++k)
-      weight_of[skin.slot_joint[skin.slots[first + k]]] += place.weights[corner] * skin.weights[first + k];
+      weight_of[skin.slot_joint[skin.slots[first + k]]] += weights[corner] * skin.weights[first + k];
   }
   return weight_of;
 }
@@ -56,7 +56,7 @@ SkinPoint skin_point(const rig::Character& character, const Place& place, const 
   const rig::Triangle& t = character.mesh.triangles[place.triangle];
   point.rest = on_triangle(place, rest[t[0]], rest[t[1]], rest[t[2]]);
   point.normal = (rest[t[1]] - rest[t[0]]).cross(rest[t[2]] - rest[t[0]]).normalized();
-  const std::map<int, float> weight_of = joint_weights(character, place);
+  const std::map<int, float> weight_of = joint_weights(character, t, place.weights);
   std::vector<std::pair<float, int>> falling;
   for (const auto& [joint, weight] : weight_of) falling.emplace_back(-weight, joint);
   std::sort(falling.begin(), falling.end());
@@ -106,6 +106,10 @@ void group(std::vector<int>& order, int first, int last, const std::vector<SkinP
 
 } // namespace
 
+int main_joint_of(const rig::Character& character, const rig::Triangle& triangle) {
+  return main_joint_of(joint_weights(character, triangle, {1.0f / 3, 1.0f / 3, 1.0f / 3}));
+}
+
 void PointBlocks::add(int pose_index, std::span<const Vec3f> positions, std::span<const float> weights, std::span<const int> points) {
   Vec3f low = positions[0], high = positions[0];
   for (const Vec3f& p : positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -137,8 +141,7 @@ FitPoints sample_skin(const rig::Character& character, const std::vector<std::ve
     const auto& [a, b, c] = triangles[t];
     areas[t] = 0.5 * (rest[b] - rest[a]).cross(rest[c] - rest[a]).norm();
     whole += areas[t];
-    const int main = main_joint_of(joint_weights(character, {t, {1.0f / 3, 1.0f / 3, 1.0f / 3}}));
-    if (region == FitRegion::garment && parts[main] != rig::BodyPart::garment) areas[t] = 0.0;
+    if (region == FitRegion::garment && parts[main_joint_of(character, triangles[t])] != rig::BodyPart::garment) areas[t] = 0.0;
   }
   if (!(whole > 0.0) || !std::isfinite(whole)) throw std::invalid_argument("a mesh without area");
   if (!(std::accumulate(areas.begin(), areas.end(), 0.0) > 0.0))

@@ -45,6 +45,9 @@ struct FitPoints {
 FitPoints sample_skin(const rig::Character& character, const std::vector<std::vector<Transform>>& poses,
                       FitRegion region, int count, std::uint32_t seed);
 
+/// The joint with most weight on a triangle.
+int main_joint_of(const rig::Character& character, const rig::Triangle& triangle);
+
 /// Points of the whole skin in each pose, without weights.
 struct SkinCloud {
   std::vector<std::vector<Vec3f>> positions, normals; ///< [pose][point]
