@@ -31,8 +31,8 @@ struct FitOptions {
   std::optional<double> cover;     ///< m: no sample sticks out further than this
   FitRegion region = FitRegion::garment;
   bool symmetric = true; ///< where the body is; false: never
-  int samples = 2000;    ///< of the skin, in each pose
-  int poses = 24;        ///< the most different ones of those given are fitted; all are measured
+  int samples = 3000;    ///< of the skin, in each pose
+  int poses = 32;        ///< the most different ones of those given are fitted; all are measured
 };
 inline constexpr int k_most_fit_shapes = 256;
 

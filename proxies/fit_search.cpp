@@ -15,7 +15,7 @@ constexpr int k_settling = 2;          // refinement steps after each change of 
 
 Search::Search(const FitPoints& points, const BodyMotion& motion, const Guard& guard, const Cost& cost,
                std::function<bool()> keep_going)
-    : points_(points), motion_(motion), guard_(guard), cost_weights_(cost), keep_going_(std::move(keep_going)) {}
+    : points_(&points), motion_(&motion), guard_(&guard), cost_weights_(cost), keep_going_(std::move(keep_going)) {}
 
 void Search::start(std::vector<Unit> units) {
   units_ = std::move(units);
@@ -45,7 +45,7 @@ void Search::replace(int unit, const std::vector<Unit>& by) {
 
 void Search::update_splits() {
   for (int u = 0; u < static_cast<int>(units_.size()) && keep_going_(); ++u) {
-    const Ownership own = owned_by(u, problem(), points_, units_, shapes_, nearest_, k_split_lanes);
+    const Ownership own = owned_by(u, problem(), *points_, units_, shapes_, nearest_, k_split_lanes);
     Known& known = known_[u];
     if (known.cost >= 0.0 && std::abs(own.cost - known.cost) <= k_changed * known.cost) continue;
     known.splits = best_splits(problem(), units_[u], own);
@@ -76,14 +76,14 @@ bool Search::shrink(int most) {
   look(true);
   std::vector<double> loss(units_.size(), 0.0);
   for (std::size_t i = 0; i < nearest_.distance.size(); ++i) {
-    const double weight = static_cast<double>(points_.blocks.weight[i]);
+    const double weight = static_cast<double>(points_->blocks.weight[i]);
     if (!(weight > 0.0)) continue;
     const double then = std::min(static_cast<double>(nearest_.second_distance[i]), 1.0);
     loss[shapes_.unit[nearest_.shape[i]]] += weight * (cost_weights_.of(then) - cost_weights_.of(static_cast<double>(nearest_.distance[i])));
   }
   int best = -1;
   for (int u = 0; u < static_cast<int>(units_.size()); ++u) {
-    loss[u] = (loss[u] - guard_.cost(units_[u], motion_, cost_weights_.guard, nullptr, nullptr)) / units_[u].shapes();
+    loss[u] = (loss[u] - guard_->cost(units_[u], *motion_, cost_weights_.guard, nullptr, nullptr)) / units_[u].shapes();
     if (units_[u].shapes() <= most && (best < 0 || loss[u] < loss[best])) best = u;
   }
   if (best < 0 || units_.size() < 2) return false;
@@ -96,13 +96,13 @@ void Search::update_skins() {
   std::vector<Unit> before = units_;
   const double cost_before = cost_;
   for (int u = 0; u < static_cast<int>(units_.size()); ++u) {
-    const Ownership own = owned_by(u, problem(), points_, units_, shapes_, nearest_, k_split_lanes);
+    const Ownership own = owned_by(u, problem(), *points_, units_, shapes_, nearest_, k_split_lanes);
     if (own.points.empty()) continue;
     std::vector<Unit> alone = {units_[u]};
-    take_skins(alone[0], own.points, motion_);
+    take_skins(alone[0], own.points, *motion_);
     if (alone[0].skin_a == units_[u].skin_a && alone[0].skin_b == units_[u].skin_b) continue;
-    alone[0].settle(motion_);
-    const Problem local{own.blocks, motion_, guard_, cost_weights_};
+    alone[0].settle(*motion_);
+    const Problem local{own.blocks, *motion_, *guard_, cost_weights_};
     PosedShapes shapes;
     Nearest nearest;
     if (cost_of(local, alone, shapes, nearest) < own.cost) units_[u] = alone[0];
@@ -113,12 +113,13 @@ void Search::update_skins() {
   look();
 }
 
-void Search::polish(int rounds, int iterations) {
+void Search::polish(int rounds, int iterations, const std::function<void(double)>& done) {
   const int count = shape_count();
   update_skins();
   refine(iterations);
   int fruitless = 0;
   for (int round = 0; round < rounds && fruitless < 3 && keep_going_(); ++round) {
+    done(static_cast<double>(round) / rounds);
     const std::vector<Unit> units = units_;
     const std::vector<Known> known = known_;
     const double cost = cost_;

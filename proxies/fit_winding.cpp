@@ -7,10 +7,11 @@
 namespace tutu::proxies::fit {
 namespace {
 
-constexpr int k_group = 16;      // triangles
-constexpr float k_far = 1.8f;    // a group is far from this many of its radii on
+constexpr int k_group = 16;   // triangles
+constexpr int k_large = 16;   // groups
+constexpr float k_far = 1.8f; // a group is far from this many of its radii on
 
-/// Signed solid angle of a triangle [van Oosterom and Strackee 1983, eq. 8].
+/// Signed, of a triangle [van Oosterom and Strackee 1983, eq. 8].
 double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
   const double la = a.norm(), lb = b.norm(), lc = c.norm();
   return 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
@@ -41,58 +42,74 @@ std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions, 
   return order;
 }
 
+void Winding::Groups::add(std::span<const Vec3> positions, std::span<const rig::Triangle> run) {
+  Vec3 normal = Vec3::Zero(), weighted = Vec3::Zero();
+  double area = 0.0;
+  for (const auto& [i, j, k] : run) {
+    const Vec3 &a = positions[i], &b = positions[j], &c = positions[k];
+    const Vec3 n = 0.5 * (b - a).cross(c - a);
+    normal += n;
+    area += n.norm();
+    weighted += n.norm() * (a + b + c) / 3.0;
+  }
+  const Vec3 centre = area > 0.0 ? Vec3(weighted / area) : positions[run[0][0]];
+  double reach2 = 0.0;
+  for (const rig::Triangle& t : run)
+    for (const std::uint32_t corner : t) reach2 = std::max(reach2, (positions[corner] - centre).squaredNorm());
+  x.push_back(static_cast<float>(centre.x()));
+  y.push_back(static_cast<float>(centre.y()));
+  z.push_back(static_cast<float>(centre.z()));
+  nx.push_back(static_cast<float>(normal.x()));
+  ny.push_back(static_cast<float>(normal.y()));
+  nz.push_back(static_cast<float>(normal.z()));
+  near2.push_back(static_cast<float>(reach2) * k_far * k_far);
+}
+
+template <typename Near>
+double Winding::Groups::solid_angle(const Vec3& point, int first, int last, const Near& near) const {
+  const float px = static_cast<float>(point.x()), py = static_cast<float>(point.y()), pz = static_cast<float>(point.z());
+  double sum = 0.0;
+  for (; first < last; first += k_large) { // in chunks whose loop becomes vectors
+    const int n = std::min(k_large, last - first);
+    float dipole[k_large], closer[k_large];
+    for (int k = 0; k < n; ++k) {
+      const int g = first + k;
+      const float dx = x[g] - px, dy = y[g] - py, dz = z[g] - pz;
+      const float d2 = dx * dx + dy * dy + dz * dz;
+      dipole[k] = (dx * nx[g] + dy * ny[g] + dz * nz[g]) / (d2 * std::sqrt(d2));
+      closer[k] = near2[g] - d2;
+    }
+    for (int k = 0; k < n; ++k) {
+      if (closer[k] < 0.0f) sum += static_cast<double>(dipole[k]);
+      else sum += near(first + k);
+    }
+  }
+  return sum;
+}
+
 Winding::Winding(std::span<const Vec3> positions, std::span<const rig::Triangle> triangles)
     : positions_(positions), triangles_(triangles) {
-  for (std::size_t first = 0; first < triangles.size(); first += k_group) {
-    const std::size_t last = std::min(triangles.size(), first + k_group);
-    Vec3 normal = Vec3::Zero(), weighted = Vec3::Zero();
-    double area = 0.0;
-    for (std::size_t t = first; t < last; ++t) {
-      const Vec3 &a = positions[triangles[t][0]], &b = positions[triangles[t][1]], &c = positions[triangles[t][2]];
-      const Vec3 n = 0.5 * (b - a).cross(c - a);
-      normal += n;
-      area += n.norm();
-      weighted += n.norm() * (a + b + c) / 3.0;
-    }
-    const Vec3 centre = area > 0.0 ? Vec3(weighted / area) : positions[triangles[first][0]];
-    double reach2 = 0.0;
-    for (std::size_t t = first; t < last; ++t)
-      for (const std::uint32_t corner : triangles[t]) reach2 = std::max(reach2, (positions[corner] - centre).squaredNorm());
-    x_.push_back(static_cast<float>(centre.x()));
-    y_.push_back(static_cast<float>(centre.y()));
-    z_.push_back(static_cast<float>(centre.z()));
-    nx_.push_back(static_cast<float>(normal.x()));
-    ny_.push_back(static_cast<float>(normal.y()));
-    nz_.push_back(static_cast<float>(normal.z()));
-    reach2_.push_back(static_cast<float>(reach2) * k_far * k_far);
-  }
+  const auto cut = [&](Groups& groups, std::size_t length) {
+    for (std::size_t first = 0; first < triangles.size(); first += length)
+      groups.add(positions, triangles.subspan(first, std::min(length, triangles.size() - first)));
+  };
+  cut(small_, k_group);
+  cut(large_, static_cast<std::size_t>(k_group) * k_large);
 }
 
 double Winding::at(const Vec3& point) const {
-  const float px = static_cast<float>(point.x()), py = static_cast<float>(point.y()), pz = static_cast<float>(point.z());
-  constexpr int k_chunk = 64;
-  double sum = 0.0;
-  const int groups = static_cast<int>(x_.size());
-  for (int first = 0; first < groups; first += k_chunk) {
-    const int n = std::min(k_chunk, groups - first);
-    float far[k_chunk], near[k_chunk];
-    for (int k = 0; k < n; ++k) {
-      const int g = first + k;
-      const float dx = x_[g] - px, dy = y_[g] - py, dz = z_[g] - pz;
-      const float d2 = dx * dx + dy * dy + dz * dz;
-      const float dipole = (dx * nx_[g] + dy * ny_[g] + dz * nz_[g]) / (d2 * std::sqrt(d2));
-      near[k] = reach2_[g] - d2;
-      far[k] = near[k] > 0.0f ? 0.0f : dipole;
-    }
-    for (int k = 0; k < n; ++k) {
-      sum += static_cast<double>(far[k]);
-      if (!(near[k] > 0.0f)) continue;
-      const std::size_t from = static_cast<std::size_t>(first + k) * k_group;
-      for (std::size_t t = from; t < std::min(triangles_.size(), from + k_group); ++t)
-        sum += solid_angle(positions_[triangles_[t][0]] - point, positions_[triangles_[t][1]] - point, positions_[triangles_[t][2]] - point);
-    }
-  }
-  return sum / (4.0 * std::numbers::pi);
+  const auto exact = [&](int group) {
+    double sum = 0.0;
+    const std::size_t from = static_cast<std::size_t>(group) * k_group;
+    for (std::size_t t = from; t < std::min(triangles_.size(), from + k_group); ++t)
+      sum += fit::solid_angle(positions_[triangles_[t][0]] - point, positions_[triangles_[t][1]] - point, positions_[triangles_[t][2]] - point);
+    return sum;
+  };
+  const int small = static_cast<int>(small_.x.size());
+  const auto open = [&](int group) {
+    return small_.solid_angle(point, group * k_large, std::min(small, (group + 1) * k_large), exact);
+  };
+  return large_.solid_angle(point, 0, static_cast<int>(large_.x.size()), open) / (4.0 * std::numbers::pi);
 }
 
 } // namespace tutu::proxies::fit

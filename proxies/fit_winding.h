@@ -17,9 +17,17 @@ public:
   double at(const Vec3& point) const;
 
 private:
+  /// Runs of triangles: centre, sum of area normals, and the square of the distance from which that is enough.
+  struct Groups {
+    std::vector<float> x, y, z, nx, ny, nz, near2;
+    void add(std::span<const Vec3> positions, std::span<const rig::Triangle> run);
+    /// Adds the solid angle of the far ones among first..last, and calls `near` with each of the others.
+    template <typename Near> double solid_angle(const Vec3& point, int first, int last, const Near& near) const;
+  };
+
   std::span<const Vec3> positions_;
   std::span<const rig::Triangle> triangles_;
-  std::vector<float> x_, y_, z_, nx_, ny_, nz_, reach2_; ///< [group]: centre, sum of area normals, square of its reach
+  Groups small_, large_; ///< a large one is k_large small ones
 };
 
 /// The same triangles in an order in which neighbours stand together.
