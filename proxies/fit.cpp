@@ -61,7 +61,8 @@ FitCurvePoint curve_point(const Search& search, const PointBlocks& blocks) {
 bool meets(const FitCurvePoint& point, double error) { return std::max(point.under_p95, point.over_p95) <= error; }
 
 /// Makes skin that sticks out dearer and dearer, then widens what is still too thin, as seen at points of its own.
-bool cover(Search& search, const FitPoints& dense, const BodyMotion& motion, double tolerance, std::vector<Unit>& units) {
+bool cover(Search& search, const FitPoints& dense, const BodyMotion& motion, double tolerance,
+           std::vector<Unit>& units) {
   for (const double under : {10.0, 100.0}) {
     Cost cost = search.problem().cost;
     cost.under = under;
@@ -91,15 +92,19 @@ bool cover(Search& search, const FitPoints& dense, const BodyMotion& motion, dou
   return false;
 }
 
-void check(const std::vector<std::vector<Transform>>& poses, const rig::Character& character, const FitOptions& options) {
+void check(const std::vector<std::vector<Transform>>& poses, const rig::Character& character,
+           const FitOptions& options) {
   if (poses.empty()) throw std::invalid_argument("no pose to fit");
   for (const auto& pose : poses)
     if (static_cast<int>(pose.size()) != character.skeleton.joint_count())
       throw std::invalid_argument("a pose of another skeleton");
   if (options.count < 1 || options.count > k_most_fit_shapes)
-    throw std::invalid_argument("a count of " + std::to_string(options.count) + ", not 1 to " + std::to_string(k_most_fit_shapes));
+    throw std::invalid_argument("a count of " + std::to_string(options.count) + ", not 1 to " +
+                                std::to_string(k_most_fit_shapes));
   if (options.samples < k_lanes || options.poses < 1) throw std::invalid_argument("too few samples or poses");
-  const auto bad = [](const std::optional<double>& length) { return length && !(std::isfinite(*length) && *length >= 0.0); };
+  const auto bad = [](const std::optional<double>& length) {
+    return length && !(std::isfinite(*length) && *length >= 0.0);
+  };
   if (bad(options.max_error) || bad(options.cover)) throw std::invalid_argument("a tolerance below 0");
 }
 
@@ -145,7 +150,8 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
     const FitPoints dense = sample_skin(character, fitted, options.region, 3 * options.samples, 2);
     result.met = cover(search, dense, motion, *options.cover, units) && result.met;
   }
-  std::stable_sort(result.curve.begin(), result.curve.end(), [](const auto& a, const auto& b) { return a.count < b.count; });
+  std::stable_sort(result.curve.begin(), result.curve.end(),
+                   [](const auto& a, const auto& b) { return a.count < b.count; });
   // Of two with one count the later is the better one: it was refined longer.
   std::vector<FitCurvePoint> curve;
   for (const FitCurvePoint& point : result.curve) {

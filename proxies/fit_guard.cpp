@@ -7,9 +7,9 @@
 namespace tutu::proxies::fit {
 namespace {
 
-constexpr int k_guard_points = 8000;  // of the skin, a pose
-constexpr double k_cell = 0.0125;     // of the height
-constexpr float k_margin = 5.0f;      // cells around the body
+constexpr int k_guard_points = 8000; // of the skin, a pose
+constexpr double k_cell = 0.0125;    // of the height
+constexpr float k_margin = 5.0f;     // cells around the body
 
 /// A surface point of a capsule: where along the axis, and the direction from it in the axis' own frame (along, and
 /// two across).
@@ -37,8 +37,8 @@ std::vector<SurfacePoint> surface_points() {
   return points;
 }
 
-void sweep(std::vector<int>& nearest, std::vector<float>& squared, const std::array<int, 3>& n, const Vec3f& origin, float cell,
-           const std::vector<Vec3f>& points, int step) {
+void sweep(std::vector<int>& nearest, std::vector<float>& squared, const std::array<int, 3>& n, const Vec3f& origin,
+           float cell, const std::vector<Vec3f>& points, int step) {
   const auto at = [&](int i, int j, int k) { return (static_cast<std::size_t>(k) * n[1] + j) * n[0] + i; };
   const auto from = [&](int size) { return step > 0 ? 0 : size - 1; };
   const auto inside = [](int i, int size) { return i >= 0 && i < size; };
@@ -65,7 +65,8 @@ void sweep(std::vector<int>& nearest, std::vector<float>& squared, const std::ar
 
 } // namespace
 
-DistanceGrid::DistanceGrid(const std::vector<Vec3f>& positions, const std::vector<Vec3f>& normals, float cell, float spacing)
+DistanceGrid::DistanceGrid(const std::vector<Vec3f>& positions, const std::vector<Vec3f>& normals, float cell,
+                           float spacing)
     : cell_(cell) {
   Vec3f low = positions[0], high = positions[0];
   for (const Vec3f& p : positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -81,7 +82,9 @@ DistanceGrid::DistanceGrid(const std::vector<Vec3f>& positions, const std::vecto
     const int i0 = static_cast<int>(local.x()), j0 = static_cast<int>(local.y()), k0 = static_cast<int>(local.z());
     for (int corner = 0; corner < 8; ++corner) {
       const int i = i0 + (corner & 1), j = j0 + ((corner >> 1) & 1), k = k0 + (corner >> 2);
-      const float d = (local - Vec3f(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k))).squaredNorm() * cell * cell;
+      const float d =
+          (local - Vec3f(static_cast<float>(i), static_cast<float>(j), static_cast<float>(k))).squaredNorm() * cell *
+          cell;
       if (d < squared[at(i, j, k)]) squared[at(i, j, k)] = d, nearest[at(i, j, k)] = p;
     }
   }
@@ -148,7 +151,8 @@ double Guard::cost(const Unit& unit, const BodyMotion& motion, const Strength& s
     int least = 0;
     along.cwiseAbs().minCoeff(&least);
     const Vec3 across = along.cross(Vec3::Unit(least)).normalized(), third = along.cross(across);
-    const double side = 2.0 * std::numbers::pi * unit.radius * length, caps = 4.0 * std::numbers::pi * unit.radius * unit.radius;
+    const double side = 2.0 * std::numbers::pi * unit.radius * length,
+                 caps = 4.0 * std::numbers::pi * unit.radius * unit.radius;
     for (const SurfacePoint& point : points) {
       const Vec3 direction = point.direction.x() * along + point.direction.y() * across + point.direction.z() * third;
       const Vec3 q = a + point.t * (b - a) + unit.radius * direction;
@@ -156,11 +160,13 @@ double Guard::cost(const Unit& unit, const BodyMotion& motion, const Strength& s
       const double out = grids_[g].at(q, slope) - strength.dead;
       if (!(out > 0.0)) continue;
       const double patch = point.cap ? caps / 14.0 : side / 24.0;
-      const double weight = unit.shapes() * strength.weight * patch / (motion.area * static_cast<double>(poses_.size()));
+      const double weight =
+          unit.shapes() * strength.weight * patch / (motion.area * static_cast<double>(poses_.size()));
       total += weight * out * out;
       if (!hessian) continue;
       Row row;
-      row << (1.0 - point.t) * (fa.leftCols<3>().transpose() * slope), point.t * (fb.leftCols<3>().transpose() * slope), slope.dot(direction);
+      row << (1.0 - point.t) * (fa.leftCols<3>().transpose() * slope), point.t * (fb.leftCols<3>().transpose() * slope),
+          slope.dot(direction);
       constrain(row, unit.kind);
       *hessian += weight * row * row.transpose();
       *gradient += weight * out * row;

@@ -5,8 +5,8 @@
 
 namespace tutu::proxies::fit {
 
-/// Distance from the body on a grid, in one pose: > 0 outside, about. From points of the skin, so only what is farther out
-/// than their spacing is told well; that is all a guard needs.
+/// Distance from the body on a grid, in one pose: > 0 outside, about. From points of the skin, so only what is farther
+/// out than their spacing is told well; that is all a guard needs.
 class DistanceGrid {
 public:
   /// Positions and outward normals of points spread evenly over the whole skin, `spacing` apart.
@@ -30,8 +30,8 @@ public:
         const BodyMotion& motion);
 
   struct Strength {
-    double weight = 1.0;  ///< of the whole mesh's area, against the skin's 1
-    double dead = 0.020;  ///< m, that is free
+    double weight = 1.0; ///< of the whole mesh's area, against the skin's 1
+    double dead = 0.020; ///< m, that is free
   };
   /// Cost of one unit; where `hessian` is given, adds the Gauss-Newton terms of its parameters (a, b, radius).
   double cost(const Unit& unit, const BodyMotion& motion, const Strength& strength, Hessian* hessian,

@@ -16,9 +16,9 @@ namespace {
 
 using namespace fit;
 
-constexpr double k_fine = 5e-4; // m: cells of this radius end the search for a bound
+constexpr double k_fine = 5e-4;                      // m: cells of this radius end the search for a bound
 constexpr double k_off_skin = 0.002, k_buried = 0.6; // as sample_skin has them
-constexpr double k_most_patches = 60e3;             // over all poses
+constexpr double k_most_patches = 60e3;              // over all poses
 constexpr std::uint32_t k_seed = 20011;              // not that of a fit
 
 /// Values with weights, and what they come to.
@@ -112,10 +112,13 @@ double under_bound(const Scene& scene, double known) {
     if (cell.bound <= known) break;
     const Vec3 normal = (cell.at[1] - cell.at[0]).cross(cell.at[2] - cell.at[0]).normalized();
     const auto buried = [&](const Vec3& point) { return scene.winding.at(point + k_off_skin * normal) > k_buried; };
-    if (std::all_of(cell.at.begin(), cell.at.end(), buried) && buried((cell.at[0] + cell.at[1] + cell.at[2]) / 3.0)) continue;
+    if (std::all_of(cell.at.begin(), cell.at.end(), buried) && buried((cell.at[0] + cell.at[1] + cell.at[2]) / 3.0))
+      continue;
     if (cell.bound - cell.value <= k_fine) return cell.bound;
-    const Vec3 ab = 0.5 * (cell.at[0] + cell.at[1]), bc = 0.5 * (cell.at[1] + cell.at[2]), ca = 0.5 * (cell.at[2] + cell.at[0]);
-    const std::array<std::array<Vec3, 3>, 4> parts = {{{cell.at[0], ab, ca}, {ab, cell.at[1], bc}, {ca, bc, cell.at[2]}, {ab, bc, ca}}};
+    const Vec3 ab = 0.5 * (cell.at[0] + cell.at[1]), bc = 0.5 * (cell.at[1] + cell.at[2]),
+               ca = 0.5 * (cell.at[2] + cell.at[0]);
+    const std::array<std::array<Vec3, 3>, 4> parts = {
+        {{cell.at[0], ab, ca}, {ab, cell.at[1], bc}, {ca, bc, cell.at[2]}, {ab, bc, ca}}};
     for (const auto& part : parts) cells.push(triangle_cell(scene, part));
   }
   return known;
@@ -164,7 +167,8 @@ void measure_over(const Scene& scene, double size, Weighted& over, double& bound
       break;
     }
     for (const Patch& part : quarters(capsule_of(scene.shapes, scene.pose, cell.shape), cell.patch))
-      if (const auto out = look_out(scene, part, cell.shape)) cells.push({out->of_body + part.radius, cell.shape, part});
+      if (const auto out = look_out(scene, part, cell.shape))
+        cells.push({out->of_body + part.radius, cell.shape, part});
   }
 }
 
@@ -206,7 +210,8 @@ PosedShapes place(std::span<const Proxy> proxies, const std::vector<std::vector<
 } // namespace fit
 
 FitError measure_fit(const rig::Character& character, const std::vector<std::vector<Transform>>& poses,
-                     const std::vector<Proxy>& proxies, FitRegion region, int skin_points, const FitProgress& progress) {
+                     const std::vector<Proxy>& proxies, FitRegion region, int skin_points,
+                     const FitProgress& progress) {
   const PosedShapes shapes = place(proxies, poses);
   if (shapes.count == 0) throw std::invalid_argument("no proxy to measure");
   FitError error;

@@ -10,8 +10,9 @@
 namespace tutu::proxies::fit {
 namespace {
 
-constexpr double k_least_weight = 0.04;     // of a joint under an end: less is noise that a person has to read
-constexpr double k_mirror_tolerance = 0.015; // of the height: joints of a pair, and skin, may miss their mirror image by that
+constexpr double k_least_weight = 0.04; // of a joint under an end: less is noise that a person has to read
+constexpr double k_mirror_tolerance =
+    0.015; // of the height: joints of a pair, and skin, may miss their mirror image by that
 
 Affine affine(const Transform& t) {
   Affine m;
@@ -61,8 +62,8 @@ Anchor anchor_of(const Vec3& rest_point, const EndSkin& skin, std::span<const Tr
 
 } // namespace
 
-BodyMotion body_motion(const rig::Character& character, const std::vector<std::vector<Transform>>& poses, bool symmetric,
-                       const std::vector<SkinPoint>& skin) {
+BodyMotion body_motion(const rig::Character& character, const std::vector<std::vector<Transform>>& poses,
+                       bool symmetric, const std::vector<SkinPoint>& skin) {
   const rig::Skeleton& skeleton = character.skeleton;
   BodyMotion motion;
   motion.poses = static_cast<int>(poses.size());
@@ -89,7 +90,8 @@ BodyMotion body_motion(const rig::Character& character, const std::vector<std::v
     const std::string other = rig::name_on_other_side(skeleton.names[j]);
     const auto partner = other.empty() ? std::optional<int>(j) : skeleton.find(other);
     if (!partner || !alike[j] || !alike[*partner]) continue;
-    if ((mirrored(rest[j].translation) - rest[*partner].translation).norm() <= 2.0 * tolerance) motion.mirror[j] = *partner;
+    if ((mirrored(rest[j].translation) - rest[*partner].translation).norm() <= 2.0 * tolerance)
+      motion.mirror[j] = *partner;
   }
   return motion;
 }
@@ -109,7 +111,8 @@ EndSkin end_skin(std::vector<double> weight_of_joint, const BodyMotion& motion, 
   }
   std::vector<int> falling(weight_of_joint.size());
   std::iota(falling.begin(), falling.end(), 0);
-  std::stable_sort(falling.begin(), falling.end(), [&](int a, int b) { return weight_of_joint[a] > weight_of_joint[b]; });
+  std::stable_sort(falling.begin(), falling.end(),
+                   [&](int a, int b) { return weight_of_joint[a] > weight_of_joint[b]; });
   const double total = std::accumulate(weight_of_joint.begin(), weight_of_joint.end(), 0.0);
   EndSkin skin;
   for (const int j : falling) {
@@ -146,7 +149,8 @@ void Unit::settle(const BodyMotion& motion) {
   frames_a.resize(size);
   frames_b.resize(size);
   for (int image = 0; image < images; ++image) {
-    const EndSkin at_a = image ? fit::mirrored(skin_a, motion) : skin_a, at_b = image ? fit::mirrored(skin_b, motion) : skin_b;
+    const EndSkin at_a = image ? fit::mirrored(skin_a, motion) : skin_a,
+                  at_b = image ? fit::mirrored(skin_b, motion) : skin_b;
     for (int p = 0; p < motion.poses; ++p) {
       Affine &fa = frames_a[image * motion.poses + p], &fb = frames_b[image * motion.poses + p];
       fa.setZero();
@@ -195,8 +199,8 @@ void PosedShapes::place(std::span<const Unit> units, const BodyMotion& motion) {
       const Unit& from = units[unit[s]];
       const std::size_t i = static_cast<std::size_t>(p) * count + s, f = static_cast<std::size_t>(image[s]) * poses + p;
       const Vec3 ra = image[s] ? mirrored(from.a) : from.a, rb = image[s] ? mirrored(from.b) : from.b;
-      set(i, from.frames_a[f].leftCols<3>() * ra + from.frames_a[f].col(3), from.frames_b[f].leftCols<3>() * rb + from.frames_b[f].col(3),
-          from.radius);
+      set(i, from.frames_a[f].leftCols<3>() * ra + from.frames_a[f].col(3),
+          from.frames_b[f].leftCols<3>() * rb + from.frames_b[f].col(3), from.radius);
     }
 }
 
@@ -209,9 +213,9 @@ std::vector<Proxy> proxies_of(std::span<const Unit> units, const BodyMotion& mot
       Proxy proxy;
       proxy.kind = (unit.a - unit.b).norm() > 1e-3 ? ProxyKind::capsule : ProxyKind::sphere;
       proxy.a = anchor_of(image ? mirrored(unit.a) : unit.a, image ? mirrored(unit.skin_a, motion) : unit.skin_a, rest);
-      proxy.b = proxy.kind == ProxyKind::sphere
-                    ? proxy.a
-                    : anchor_of(image ? mirrored(unit.b) : unit.b, image ? mirrored(unit.skin_b, motion) : unit.skin_b, rest);
+      proxy.b = proxy.kind == ProxyKind::sphere ? proxy.a
+                                                : anchor_of(image ? mirrored(unit.b) : unit.b,
+                                                            image ? mirrored(unit.skin_b, motion) : unit.skin_b, rest);
       proxy.radius = std::round(unit.radius * 1e5) / 1e5;
       const std::string name = base_name(proxy, skeleton);
       proxy.name = name + " " + std::to_string(++used[name]);

@@ -21,10 +21,12 @@ struct BodyMotion {
   double height = 0.0;                 ///< m, of the rest pose's samples: what lengths are compared with
   double area = 0.0;                   ///< m2, of the whole skin at rest
 
-  const Affine& at(int pose, int joint) const { return model_from_rest[static_cast<std::size_t>(pose) * joints + joint]; }
+  const Affine& at(int pose, int joint) const {
+    return model_from_rest[static_cast<std::size_t>(pose) * joints + joint];
+  }
 };
-BodyMotion body_motion(const rig::Character& character, const std::vector<std::vector<Transform>>& poses, bool symmetric,
-                       const std::vector<SkinPoint>& skin);
+BodyMotion body_motion(const rig::Character& character, const std::vector<std::vector<Transform>>& poses,
+                       bool symmetric, const std::vector<SkinPoint>& skin);
 
 /// The joints that an end rides on, weights falling and summing to 1.
 struct EndSkin {
@@ -44,8 +46,8 @@ enum class UnitKind {
   across  ///< a capsule from the left to its mirror image
 };
 
-/// One set of parameters: ends in model space at rest, and the radius. Of a middle, x = 0; of an across, b and skin_b are
-/// the mirror images of a and skin_a.
+/// One set of parameters: ends in model space at rest, and the radius. Of a middle, x = 0; of an across, b and skin_b
+/// are the mirror images of a and skin_a.
 struct Unit {
   UnitKind kind = UnitKind::one;
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
@@ -72,9 +74,9 @@ inline void constrain(Row& row, UnitKind kind) {
 /// All shapes of some units in all poses.
 struct PosedShapes {
   int count = 0, poses = 0;
-  std::vector<int> unit;      ///< [shape]
-  std::vector<char> image;    ///< [shape]: 1 for the mirror image of a pair
-  std::vector<Vec3> a, b;     ///< [pose * count + shape]
+  std::vector<int> unit;                                             ///< [shape]
+  std::vector<char> image;                                           ///< [shape]: 1 for the mirror image of a pair
+  std::vector<Vec3> a, b;                                            ///< [pose * count + shape]
   std::vector<float> ax, ay, az, dx, dy, dz, inverse_square, radius; ///< the same, for the search; d = b - a
 
   void place(std::span<const Unit> units, const BodyMotion& motion);

@@ -11,7 +11,8 @@ constexpr float k_infinite = std::numeric_limits<float>::infinity();
 
 /// Lanes of one block against one shape. Plain loops that the compiler turns into vectors.
 void distances(const float* x, const float* y, const float* z, const PosedShapes& shapes, std::size_t s, float* out) {
-  const float ax = shapes.ax[s], ay = shapes.ay[s], az = shapes.az[s], dx = shapes.dx[s], dy = shapes.dy[s], dz = shapes.dz[s];
+  const float ax = shapes.ax[s], ay = shapes.ay[s], az = shapes.az[s], dx = shapes.dx[s], dy = shapes.dy[s],
+              dz = shapes.dz[s];
   const float inverse = shapes.inverse_square[s], radius = shapes.radius[s];
   for (int k = 0; k < k_lanes; ++k) {
     const float px = x[k] - ax, py = y[k] - ay, pz = z[k] - az;
@@ -71,7 +72,8 @@ void keep_nearest(const float* d, int shape, float* best, int* best_shape) {
   }
 }
 
-void keep_second(const float* d, int shape, const PosedShapes& shapes, float* best, int* best_shape, float* next, int* next_shape) {
+void keep_second(const float* d, int shape, const PosedShapes& shapes, float* best, int* best_shape, float* next,
+                 int* next_shape) {
   for (int k = 0; k < k_lanes; ++k) {
     const bool same_unit = best_shape[k] >= 0 && shapes.unit[best_shape[k]] == shapes.unit[shape];
     if (d[k] < best[k]) {
@@ -97,10 +99,12 @@ void find_nearest(const PointBlocks& blocks, const PosedShapes& shapes, bool sec
   for (int block = 0; block < blocks.block_count(); ++block) {
     const std::size_t lane = static_cast<std::size_t>(block) * k_lanes;
     const std::size_t first = static_cast<std::size_t>(blocks.pose[block]) * shapes.count;
-    for (const int s : candidates.find(shapes, blocks.pose[block], blocks.centre[block], blocks.radius[block], second)) {
+    for (const int s :
+         candidates.find(shapes, blocks.pose[block], blocks.centre[block], blocks.radius[block], second)) {
       distances(&blocks.x[lane], &blocks.y[lane], &blocks.z[lane], shapes, first + s, d);
       if (second)
-        keep_second(d, s, shapes, &nearest.distance[lane], &nearest.shape[lane], &nearest.second_distance[lane], &nearest.second_shape[lane]);
+        keep_second(d, s, shapes, &nearest.distance[lane], &nearest.shape[lane], &nearest.second_distance[lane],
+                    &nearest.second_shape[lane]);
       else keep_nearest(d, s, &nearest.distance[lane], &nearest.shape[lane]);
     }
   }

@@ -46,7 +46,8 @@ Patch patch(const Capsule& capsule, const Frame& frame, double low, double high,
   result.middle = (at_a ? capsule.a : capsule.b) + r * direction;
   result.area = r * r * turn * (std::sin(pole) - std::sin(rim));
   // Along a meridian, then along the widest parallel: no shorter than the way between.
-  result.radius = 2.0 * r * std::sin(0.25 * (pole - rim)) + 2.0 * r * std::cos(rim) * std::sin(std::min(0.25 * turn, 0.5 * k_pi));
+  result.radius =
+      2.0 * r * std::sin(0.25 * (pole - rim)) + 2.0 * r * std::cos(rim) * std::sin(std::min(0.25 * turn, 0.5 * k_pi));
   return result;
 }
 
@@ -70,15 +71,18 @@ std::vector<Patch> patches_of(const Capsule& capsule, double size) {
     rows_of(-pole, -rim, 1, widest);
     rows_of(1.0 + rim, 1.0 + pole, 1, widest);
   }
-  if (frame.length > 1e-6) rows_of(0.0, 1.0, std::max(1, static_cast<int>(std::ceil(frame.length / size))), capsule.radius);
+  if (frame.length > 1e-6)
+    rows_of(0.0, 1.0, std::max(1, static_cast<int>(std::ceil(frame.length / size))), capsule.radius);
   return result;
 }
 
 std::vector<Patch> quarters(const Capsule& capsule, const Patch& whole) {
   const Frame frame = frame_of(capsule);
   const double height = 0.5 * (whole.low + whole.high), angle = 0.5 * (whole.from + whole.to);
-  return {patch(capsule, frame, whole.low, height, whole.from, angle), patch(capsule, frame, whole.low, height, angle, whole.to),
-          patch(capsule, frame, height, whole.high, whole.from, angle), patch(capsule, frame, height, whole.high, angle, whole.to)};
+  return {patch(capsule, frame, whole.low, height, whole.from, angle),
+          patch(capsule, frame, whole.low, height, angle, whole.to),
+          patch(capsule, frame, height, whole.high, whole.from, angle),
+          patch(capsule, frame, height, whole.high, angle, whole.to)};
 }
 
 } // namespace tutu::proxies::fit

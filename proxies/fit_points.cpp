@@ -28,7 +28,8 @@ Vec3 on_triangle(const Place& place, const Vec3& a, const Vec3& b, const Vec3& c
 }
 
 /// Where skin vertices are in one pose, in double.
-std::vector<Vec3> skinned(const rig::Character& character, std::span<const Transform> pose, std::vector<Vec3>& normals) {
+std::vector<Vec3> skinned(const rig::Character& character, std::span<const Transform> pose,
+                          std::vector<Vec3>& normals) {
   std::vector<Vec3> positions(character.mesh.positions.size());
   normals.resize(positions.size());
   rig::skin_vertices_reference(character.mesh, character.skin, pose, positions, normals);
@@ -40,7 +41,8 @@ int main_joint_of(const std::map<int, float>& weight_of) {
   return std::max_element(weight_of.begin(), weight_of.end(), lighter)->first;
 }
 
-std::map<int, float> joint_weights(const rig::Character& character, const rig::Triangle& triangle, const std::array<float, 3>& weights) {
+std::map<int, float> joint_weights(const rig::Character& character, const rig::Triangle& triangle,
+                                   const std::array<float, 3>& weights) {
   std::map<int, float> weight_of;
   const rig::Skin& skin = character.skin;
   for (int corner = 0; corner < 3; ++corner) {
@@ -80,13 +82,16 @@ std::vector<Place> places_by_area(const std::vector<double>& areas, int count, s
     const double at = total * (i + uniform()) / count;
     while (triangle + 1 < areas.size() && reached + areas[triangle] < at) reached += areas[triangle++];
     const double root = std::sqrt(uniform()), v = uniform();
-    places.push_back({static_cast<std::uint32_t>(triangle), {static_cast<float>(1.0 - root), static_cast<float>(root * (1.0 - v)), static_cast<float>(root * v)}});
+    places.push_back(
+        {static_cast<std::uint32_t>(triangle),
+         {static_cast<float>(1.0 - root), static_cast<float>(root * (1.0 - v)), static_cast<float>(root * v)}});
   }
   return places;
 }
 
 /// Splits at the middle of the longest extent until k_lanes fit: neighbours come to stand together.
-void group(std::vector<int>& order, int first, int last, const std::vector<SkinPoint>& skin, std::vector<std::pair<int, int>>& groups) {
+void group(std::vector<int>& order, int first, int last, const std::vector<SkinPoint>& skin,
+           std::vector<std::pair<int, int>>& groups) {
   if (last - first <= k_lanes) {
     if (last > first) groups.emplace_back(first, last);
     return;
@@ -97,9 +102,8 @@ void group(std::vector<int>& order, int first, int last, const std::vector<SkinP
   box.sizes().maxCoeff(&axis);
   // Whole blocks on the left, so that few lanes stay empty.
   const int half = first + std::max(1, ((last - first) / 2 + k_lanes / 2) / k_lanes) * k_lanes;
-  std::nth_element(order.begin() + first, order.begin() + half, order.begin() + last, [&](int a, int b) {
-    return std::pair(skin[a].rest[axis], a) < std::pair(skin[b].rest[axis], b);
-  });
+  std::nth_element(order.begin() + first, order.begin() + half, order.begin() + last,
+                   [&](int a, int b) { return std::pair(skin[a].rest[axis], a) < std::pair(skin[b].rest[axis], b); });
   group(order, first, half, skin, groups);
   group(order, half, last, skin, groups);
 }
@@ -110,7 +114,8 @@ int main_joint_of(const rig::Character& character, const rig::Triangle& triangle
   return main_joint_of(joint_weights(character, triangle, {1.0f / 3, 1.0f / 3, 1.0f / 3}));
 }
 
-void PointBlocks::add(int pose_index, std::span<const Vec3f> positions, std::span<const float> weights, std::span<const int> points) {
+void PointBlocks::add(int pose_index, std::span<const Vec3f> positions, std::span<const float> weights,
+                      std::span<const int> points) {
   Vec3f low = positions[0], high = positions[0];
   for (const Vec3f& p : positions) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const Vec3f middle = 0.5f * (low + high);
@@ -141,7 +146,8 @@ FitPoints sample_skin(const rig::Character& character, const std::vector<std::ve
     const auto& [a, b, c] = triangles[t];
     areas[t] = 0.5 * (rest[b] - rest[a]).cross(rest[c] - rest[a]).norm();
     whole += areas[t];
-    if (region == FitRegion::garment && parts[main_joint_of(character, triangles[t])] != rig::BodyPart::garment) areas[t] = 0.0;
+    if (region == FitRegion::garment && parts[main_joint_of(character, triangles[t])] != rig::BodyPart::garment)
+      areas[t] = 0.0;
   }
   if (!(whole > 0.0) || !std::isfinite(whole)) throw std::invalid_argument("a mesh without area");
   if (!(std::accumulate(areas.begin(), areas.end(), 0.0) > 0.0))

@@ -31,7 +31,8 @@ struct PointBlocks {
   int block_count() const { return static_cast<int>(pose.size()); }
   std::size_t lane_count() const { return x.size(); }
   /// Appends a block; sizes the arrays. At most k_lanes entries.
-  void add(int pose_index, std::span<const Vec3f> positions, std::span<const float> weights, std::span<const int> points);
+  void add(int pose_index, std::span<const Vec3f> positions, std::span<const float> weights,
+           std::span<const int> points);
 };
 
 /// The samples of a body.
@@ -40,8 +41,8 @@ struct FitPoints {
   PointBlocks blocks; ///< weights sum to 1 over all poses
 };
 
-/// Area-weighted points of the region's skin: about `count`, stratified along the triangles' order, from the seed. Throws
-/// std::invalid_argument on a mesh without area, or with none in the region.
+/// Area-weighted points of the region's skin: about `count`, stratified along the triangles' order, from the seed.
+/// Throws std::invalid_argument on a mesh without area, or with none in the region.
 FitPoints sample_skin(const rig::Character& character, const std::vector<std::vector<Transform>>& poses,
                       FitRegion region, int count, std::uint32_t seed);
 

@@ -31,13 +31,15 @@ void step(Unit& unit, const Hessian& hessian, const Row& gradient, double dampin
 
 } // namespace
 
-double cost_of(const Problem& problem, std::span<const Unit> units, PosedShapes& shapes, Nearest& nearest, bool second) {
+double cost_of(const Problem& problem, std::span<const Unit> units, PosedShapes& shapes, Nearest& nearest,
+               bool second) {
   shapes.place(units, problem.motion);
   find_nearest(problem.blocks, shapes, second, nearest);
   double total = 0.0;
   for (std::size_t i = 0; i < nearest.distance.size(); ++i)
     total += static_cast<double>(problem.blocks.weight[i]) * problem.cost.of(static_cast<double>(nearest.distance[i]));
-  for (const Unit& unit : units) total += problem.guard.cost(unit, problem.motion, problem.cost.guard, nullptr, nullptr);
+  for (const Unit& unit : units)
+    total += problem.guard.cost(unit, problem.motion, problem.cost.guard, nullptr, nullptr);
   return total;
 }
 
@@ -53,7 +55,8 @@ void accumulate(const Problem& problem, std::span<const Unit> units, const Posed
     const Unit& unit = units[u];
     const std::size_t posed = static_cast<std::size_t>(pose) * shapes.count + s;
     const std::size_t frame = static_cast<std::size_t>(shapes.image[s]) * problem.motion.poses + pose;
-    const Vec3 point(static_cast<double>(blocks.x[i]), static_cast<double>(blocks.y[i]), static_cast<double>(blocks.z[i]));
+    const Vec3 point(static_cast<double>(blocks.x[i]), static_cast<double>(blocks.y[i]),
+                     static_cast<double>(blocks.z[i]));
     const Vec3 axis = shapes.b[posed] - shapes.a[posed], from_a = point - shapes.a[posed];
     const double squared = axis.squaredNorm();
     const double t = squared > 1e-12 ? std::clamp(from_a.dot(axis) / squared, 0.0, 1.0) : 0.0;

@@ -24,7 +24,8 @@ struct Problem {
 };
 
 /// The cost of units as they are; `nearest` receives what it was found from.
-double cost_of(const Problem& problem, std::span<const Unit> units, PosedShapes& shapes, Nearest& nearest, bool second = false);
+double cost_of(const Problem& problem, std::span<const Unit> units, PosedShapes& shapes, Nearest& nearest,
+               bool second = false);
 
 /// Improves the units by up to `iterations` steps; the cost never rises. Stops early where steps gain less than 1e-4 of
 /// it. Each point pulls at the shape it is nearest to: the Hessian is one block a unit, with

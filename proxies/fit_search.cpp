@@ -6,10 +6,10 @@
 namespace tutu::proxies::fit {
 namespace {
 
-constexpr int k_split_lanes = 1000;    // on which splits are tried: more gain nothing
-constexpr double k_changed = 0.10;     // of a unit's cost: its splits are looked for again
+constexpr int k_split_lanes = 1000;      // on which splits are tried: more gain nothing
+constexpr double k_changed = 0.10;       // of a unit's cost: its splits are looked for again
 constexpr double k_worth_keeping = 1e-3; // of the cost, that a round of swaps must gain
-constexpr int k_settling = 2;          // refinement steps after each change of the layout
+constexpr int k_settling = 2;            // refinement steps after each change of the layout
 
 } // namespace
 
@@ -62,7 +62,8 @@ bool Search::grow(int room) {
       const Split& split = known_[u].splits[added];
       if (split.units.empty()) continue;
       // A change of kind costs no shape, and little to be tried.
-      const double rate = added == 0 ? (split.gain > 0.05 * known_[u].cost ? 4.0 * split.gain : 0.0) : split.gain / added;
+      const double rate =
+          added == 0 ? (split.gain > 0.05 * known_[u].cost ? 4.0 * split.gain : 0.0) : split.gain / added;
       if (rate > gain) gain = rate, best = u, way = added;
     }
   if (best < 0) return false;
@@ -79,7 +80,8 @@ bool Search::shrink(int most) {
     const double weight = static_cast<double>(points_->blocks.weight[i]);
     if (!(weight > 0.0)) continue;
     const double then = std::min(static_cast<double>(nearest_.second_distance[i]), 1.0);
-    loss[shapes_.unit[nearest_.shape[i]]] += weight * (cost_weights_.of(then) - cost_weights_.of(static_cast<double>(nearest_.distance[i])));
+    loss[shapes_.unit[nearest_.shape[i]]] +=
+        weight * (cost_weights_.of(then) - cost_weights_.of(static_cast<double>(nearest_.distance[i])));
   }
   int best = -1;
   for (int u = 0; u < static_cast<int>(units_.size()); ++u) {
@@ -124,7 +126,8 @@ void Search::polish(int rounds, int iterations, const std::function<void(double)
     const std::vector<Known> known = known_;
     const double cost = cost_;
     const int fewer = 2 + 2 * (round % 2);
-    while (shape_count() > count - fewer && shrink(2)) {}
+    while (shape_count() > count - fewer && shrink(2)) {
+    }
     int guard = 0;
     while (shape_count() < count && keep_going_() && ++guard < 20)
       if (!grow(count - shape_count())) break;

@@ -35,7 +35,8 @@ std::array<Points, 2> halves(const Points& points, const Vec3& direction) {
 
 /// The points about the one whose neighbourhood costs most: a fifth of them.
 Points worst_cluster(const Points& points) {
-  const auto worst = std::max_element(points.begin(), points.end(), [](const UnitPoint& a, const UnitPoint& b) { return a.cost < b.cost; });
+  const auto worst = std::max_element(points.begin(), points.end(),
+                                      [](const UnitPoint& a, const UnitPoint& b) { return a.cost < b.cost; });
   std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < points.size(); ++i) order.emplace_back((points[i].rest - worst->rest).squaredNorm(), i);
   std::sort(order.begin(), order.end());

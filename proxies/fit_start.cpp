@@ -56,7 +56,8 @@ Unit capsule_through(std::span<const UnitPoint> points, UnitKind kind, const Bod
   // Of a tube's skin the variance across is r^2 / 2 each way.
   const Spread outer = spread(points, 0.0, fold);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(outer.covariance);
-  const double radius = std::clamp(std::sqrt(std::max(0.0, solver.eigenvalues()[0] + solver.eigenvalues()[1])), k_least_radius, k_most_radius);
+  const double radius = std::clamp(std::sqrt(std::max(0.0, solver.eigenvalues()[0] + solver.eigenvalues()[1])),
+                                   k_least_radius, k_most_radius);
   const Spread inner = spread(points, k_pull * radius, fold);
   solver.compute(inner.covariance);
   Vec3 axis = solver.eigenvectors().col(2);
@@ -110,7 +111,8 @@ void take_skins(Unit& unit, std::span<const UnitPoint> points, const BodyMotion&
   if (!has_b && unit.skin_b.count == 0) unit.skin_b = unit.skin_a;
 }
 
-std::vector<Unit> first_layout(const std::vector<SkinPoint>& skin, const BodyMotion& motion, const rig::Skeleton& skeleton) {
+std::vector<Unit> first_layout(const std::vector<SkinPoint>& skin, const BodyMotion& motion,
+                               const rig::Skeleton& skeleton) {
   // Owners: small joints hand their points to the joint above, from the leaves up; what has no joint above keeps them.
   std::vector<int> owned(motion.joints, 0), owner(motion.joints);
   for (const SkinPoint& p : skin) ++owned[p.main_joint];

@@ -24,6 +24,7 @@ Unit capsule_through(std::span<const UnitPoint> points, UnitKind kind, const Bod
 void take_skins(Unit& unit, std::span<const UnitPoint> points, const BodyMotion& motion);
 
 /// One unit for each joint that owns at least 0.8 % of the samples; the others' go to the joint above.
-std::vector<Unit> first_layout(const std::vector<SkinPoint>& skin, const BodyMotion& motion, const rig::Skeleton& skeleton);
+std::vector<Unit> first_layout(const std::vector<SkinPoint>& skin, const BodyMotion& motion,
+                               const rig::Skeleton& skeleton);
 
 } // namespace tutu::proxies::fit

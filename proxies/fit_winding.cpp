@@ -19,7 +19,8 @@ double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 } // namespace
 
-std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions, std::span<const rig::Triangle> triangles) {
+std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions,
+                                               std::span<const rig::Triangle> triangles) {
   std::vector<rig::Triangle> order(triangles.begin(), triangles.end());
   const auto middle = [&](const rig::Triangle& t) { return Vec3(positions[t[0]] + positions[t[1]] + positions[t[2]]); };
   std::vector<std::pair<std::size_t, std::size_t>> open = {{0, order.size()}};
@@ -32,10 +33,11 @@ std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions, 
     int axis = 0;
     box.sizes().maxCoeff(&axis);
     const std::size_t half = first + ((last - first) / 2 + k_group - 1) / k_group * k_group;
-    std::nth_element(order.begin() + static_cast<std::ptrdiff_t>(first), order.begin() + static_cast<std::ptrdiff_t>(half),
-                     order.begin() + static_cast<std::ptrdiff_t>(last), [&](const rig::Triangle& s, const rig::Triangle& t) {
-                       return std::pair(middle(s)[axis], s) < std::pair(middle(t)[axis], t);
-                     });
+    std::nth_element(
+        order.begin() + static_cast<std::ptrdiff_t>(first), order.begin() + static_cast<std::ptrdiff_t>(half),
+        order.begin() + static_cast<std::ptrdiff_t>(last), [&](const rig::Triangle& s, const rig::Triangle& t) {
+          return std::pair(middle(s)[axis], s) < std::pair(middle(t)[axis], t);
+        });
     open.emplace_back(first, half);
     open.emplace_back(half, last);
   }
@@ -67,7 +69,8 @@ void Winding::Groups::add(std::span<const Vec3> positions, std::span<const rig::
 
 template <typename Near>
 double Winding::Groups::solid_angle(const Vec3& point, int first, int last, const Near& near) const {
-  const float px = static_cast<float>(point.x()), py = static_cast<float>(point.y()), pz = static_cast<float>(point.z());
+  const float px = static_cast<float>(point.x()), py = static_cast<float>(point.y()),
+              pz = static_cast<float>(point.z());
   double sum = 0.0;
   for (; first < last; first += k_large) { // in chunks whose loop becomes vectors
     const int n = std::min(k_large, last - first);
@@ -102,7 +105,8 @@ double Winding::at(const Vec3& point) const {
     double sum = 0.0;
     const std::size_t from = static_cast<std::size_t>(group) * k_group;
     for (std::size_t t = from; t < std::min(triangles_.size(), from + k_group); ++t)
-      sum += fit::solid_angle(positions_[triangles_[t][0]] - point, positions_[triangles_[t][1]] - point, positions_[triangles_[t][2]] - point);
+      sum += fit::solid_angle(positions_[triangles_[t][0]] - point, positions_[triangles_[t][1]] - point,
+                              positions_[triangles_[t][2]] - point);
     return sum;
   };
   const int small = static_cast<int>(small_.x.size());

@@ -31,6 +31,7 @@ private:
 };
 
 /// The same triangles in an order in which neighbours stand together.
-std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions, std::span<const rig::Triangle> triangles);
+std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions,
+                                               std::span<const rig::Triangle> triangles);
 
 } // namespace tutu::proxies::fit

@@ -18,6 +18,7 @@
 #include "proxies/collision_query.h" // IWYU pragma: export
 #include "proxies/contact.h"         // IWYU pragma: export
 #include "proxies/feature_contact.h" // IWYU pragma: export
+#include "proxies/fit.h"             // IWYU pragma: export
 #include "proxies/proxy_file.h"      // IWYU pragma: export
 #include "proxies/shapes.h"          // IWYU pragma: export
 #include "proxies/signed_distance.h" // IWYU pragma: export

@@ -33,7 +33,8 @@ SidePlace find_side(const std::string& name) {
 }
 
 bool has_any(const std::string& name, std::initializer_list<std::string_view> words) {
-  return std::any_of(words.begin(), words.end(), [&](std::string_view word) { return name.find(word) != std::string::npos; });
+  return std::any_of(words.begin(), words.end(),
+                     [&](std::string_view word) { return name.find(word) != std::string::npos; });
 }
 
 BodyPart part_named(const std::string& name) {
@@ -53,8 +54,8 @@ std::string name_on_other_side(std::string_view joint_name) {
   const SidePlace place = find_side(lower(bare));
   if (place.side == Side::middle) return "";
   const std::string_view was = bare.substr(place.at, place.length);
-  std::string other = place.length == 1 ? (place.side == Side::left ? "r" : "l")
-                                        : (place.side == Side::left ? "right" : "left");
+  std::string other =
+      place.length == 1 ? (place.side == Side::left ? "r" : "l") : (place.side == Side::left ? "right" : "left");
   const bool upper = std::isupper(static_cast<unsigned char>(was[0]));
   const bool all_upper = upper && std::isupper(static_cast<unsigned char>(was.back()));
   for (std::size_t i = 0; i < other.size(); ++i)

@@ -14,7 +14,8 @@ Quat about(const Vec3& axis, double degrees) { return Quat(Eigen::AngleAxisd(rad
 
 /// The joints that poses turn. -1 where there is none.
 struct Roles {
-  std::array<int, 2> upper_leg{-1, -1}, lower_leg{-1, -1}, foot{-1, -1}, upper_arm{-1, -1}, forearm{-1, -1}, hand{-1, -1};
+  std::array<int, 2> upper_leg{-1, -1}, lower_leg{-1, -1}, foot{-1, -1}, upper_arm{-1, -1}, forearm{-1, -1},
+      hand{-1, -1};
   std::vector<int> spine; ///< from the hips up
 };
 
@@ -77,7 +78,8 @@ struct Plan {
 
 class Poser {
 public:
-  explicit Poser(const Skeleton& skeleton) : skeleton_(skeleton), rest_(rest_model(skeleton)), roles_(find_roles(skeleton)) {}
+  explicit Poser(const Skeleton& skeleton)
+      : skeleton_(skeleton), rest_(rest_model(skeleton)), roles_(find_roles(skeleton)) {}
 
   const Roles& roles() const { return roles_; }
 
@@ -94,10 +96,14 @@ public:
       if (pelvis != k_no_parent) turns[pelvis] = about(Vec3::UnitX(), strength * plan.pelvis);
     }
     const auto sides = mirrored ? std::array<std::size_t, 2>{1, 0} : std::array<std::size_t, 2>{0, 1};
-    turn_limb(plan.left_leg, roles_.upper_leg[sides[0]], roles_.lower_leg[sides[0]], roles_.foot[sides[0]], mirrored, true, strength, turns);
-    turn_limb(plan.right_leg, roles_.upper_leg[sides[1]], roles_.lower_leg[sides[1]], roles_.foot[sides[1]], !mirrored, true, strength, turns);
-    turn_limb(plan.left_arm, roles_.upper_arm[sides[0]], roles_.forearm[sides[0]], roles_.hand[sides[0]], mirrored, false, strength, turns);
-    turn_limb(plan.right_arm, roles_.upper_arm[sides[1]], roles_.forearm[sides[1]], roles_.hand[sides[1]], !mirrored, false, strength, turns);
+    turn_limb(plan.left_leg, roles_.upper_leg[sides[0]], roles_.lower_leg[sides[0]], roles_.foot[sides[0]], mirrored,
+              true, strength, turns);
+    turn_limb(plan.right_leg, roles_.upper_leg[sides[1]], roles_.lower_leg[sides[1]], roles_.foot[sides[1]], !mirrored,
+              true, strength, turns);
+    turn_limb(plan.left_arm, roles_.upper_arm[sides[0]], roles_.forearm[sides[0]], roles_.hand[sides[0]], mirrored,
+              false, strength, turns);
+    turn_limb(plan.right_arm, roles_.upper_arm[sides[1]], roles_.forearm[sides[1]], roles_.hand[sides[1]], !mirrored,
+              false, strength, turns);
     return apply(turns);
   }
 
@@ -162,14 +168,35 @@ std::vector<Plan> plans() {
   all.push_back({.name = "knee raised and bent", .left_leg = {high, 120}, .left_arm = {down, 90}});
   all.push_back({.name = "heel to the seat", .left_leg = {down, 120}, .left_arm = {out, 90}, .right_arm = {out, 0}});
   all.push_back({.name = "passe", .left_leg = {direction(0, 0, 75), 120}, .left_arm = {up, 40}, .right_arm = {up, 40}});
-  all.push_back({.name = "split", .left_leg = {split_front, 0}, .right_leg = {split_back, 0}, .left_arm = {out, 0}, .right_arm = {out, 0}});
-  all.push_back({.name = "lunge", .left_leg = {direction(0.1, 80, 0), 85}, .right_leg = {direction(0.1, -30, 0), 10}, .right_arm = {ahead, 10}});
+  all.push_back({.name = "split",
+                 .left_leg = {split_front, 0},
+                 .right_leg = {split_back, 0},
+                 .left_arm = {out, 0},
+                 .right_arm = {out, 0}});
+  all.push_back({.name = "lunge",
+                 .left_leg = {direction(0.1, 80, 0), 85},
+                 .right_leg = {direction(0.1, -30, 0), 10},
+                 .right_arm = {ahead, 10}});
   all.push_back({.name = "arms crossed", .left_arm = {cross, 60}, .right_arm = {cross, 60}, .twist = 25});
   all.push_back({.name = "bent to the side", .left_arm = {down, 20}, .right_arm = {up, 20}, .side = 40});
   all.push_back({.name = "twisted", .left_arm = {out, 45}, .right_arm = {out, 45}, .twist = 50});
-  all.push_back({.name = "side leg, body leaning away", .left_leg = {to_side, 30}, .left_arm = {up, 10}, .right_arm = {down, 0}, .side = -30, .twist = -20});
-  all.push_back({.name = "squat", .left_leg = {squat, 120}, .right_leg = {squat, 120}, .left_arm = {ahead, 0}, .right_arm = {ahead, 0}, .forward = 20});
-  all.push_back({.name = "straddle", .left_leg = {direction(0, 30, 75), 0}, .right_leg = {direction(0, 30, 75), 0}, .left_arm = {out, 0}, .right_arm = {out, 0}});
+  all.push_back({.name = "side leg, body leaning away",
+                 .left_leg = {to_side, 30},
+                 .left_arm = {up, 10},
+                 .right_arm = {down, 0},
+                 .side = -30,
+                 .twist = -20});
+  all.push_back({.name = "squat",
+                 .left_leg = {squat, 120},
+                 .right_leg = {squat, 120},
+                 .left_arm = {ahead, 0},
+                 .right_arm = {ahead, 0},
+                 .forward = 20});
+  all.push_back({.name = "straddle",
+                 .left_leg = {direction(0, 30, 75), 0},
+                 .right_leg = {direction(0, 30, 75), 0},
+                 .left_arm = {out, 0},
+                 .right_arm = {out, 0}});
   all.push_back({.name = "arms up", .left_arm = {up, 10}, .right_arm = {up, 10}});
   all.push_back({.name = "bent forward", .left_arm = {down, 0}, .right_arm = {down, 0}, .forward = 60, .pelvis = 30});
   all.push_back({.name = "bent back", .left_arm = {up, 0}, .right_arm = {up, 0}, .forward = -40});
@@ -178,7 +205,8 @@ std::vector<Plan> plans() {
 
 bool is_symmetric(const Plan& plan) {
   const auto same = [](const Limb& a, const Limb& b) { return a.upper == b.upper && a.bend == b.bend; };
-  return same(plan.left_leg, plan.right_leg) && same(plan.left_arm, plan.right_arm) && plan.side == 0.0 && plan.twist == 0.0;
+  return same(plan.left_leg, plan.right_leg) && same(plan.left_arm, plan.right_arm) && plan.side == 0.0 &&
+         plan.twist == 0.0;
 }
 
 } // namespace
@@ -198,7 +226,8 @@ std::vector<NamedPose> strong_poses(const Skeleton& skeleton) {
     }
     poses.push_back({std::string(plan.name) + ", other side", poser.pose(plan, 1.0, true)});
     // The way there of every second, on alternating sides.
-    if (poses.size() % 4 < 2) poses.push_back({std::string(plan.name) + ", half way", poser.pose(plan, 0.5, poses.size() % 8 < 4)});
+    if (poses.size() % 4 < 2)
+      poses.push_back({std::string(plan.name) + ", half way", poser.pose(plan, 0.5, poses.size() % 8 < 4)});
   }
   return poses;
 }
