@@ -25,7 +25,7 @@ bool on_path(const char* program) {
 }
 
 /// A text as gnuplot reads it between single quotes.
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
   return result + "'";
@@ -36,13 +36,13 @@ std::string script_of(const Chart& chart, const std::filesystem::path& picture, 
       svg ? "set terminal svg size 800,500 font 'sans,13' background 'white'\n" : "set terminal png size 800,500\n";
   text += fmt::format("set output {}\nset title {} noenhanced\nset xlabel {}\nset ylabel {}\nset yrange [0:*]\nset "
                       "grid\nset key top right noenhanced\n",
-                      quoted(picture.string()), quoted(chart.title), quoted(chart.x), quoted(chart.y));
+                      in_quotes(picture.string()), in_quotes(chart.title), in_quotes(chart.x), in_quotes(chart.y));
   if (!chart.right.empty())
-    text += fmt::format("set y2label {}\nset y2tics\nset ytics nomirror\nset y2range [0:*]\n", quoted(chart.right));
+    text += fmt::format("set y2label {}\nset y2tics\nset ytics nomirror\nset y2range [0:*]\n", in_quotes(chart.right));
   std::string plot, data;
   for (const ChartLine& line : chart.lines) {
     plot += fmt::format("{}'-' with linespoints {} title {}", plot.empty() ? "plot " : ", ",
-                        line.right_axis ? "axes x1y2" : "", quoted(line.name));
+                        line.right_axis ? "axes x1y2" : "", in_quotes(line.name));
     for (const auto& [x, y] : line.points) data += fmt::format("{} {}\n", x, y);
     data += "e\n";
   }
