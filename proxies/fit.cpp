@@ -63,9 +63,9 @@ bool meets(const FitCurvePoint& point, double error) { return std::max(point.und
 /// Makes skin that sticks out dearer and dearer, then widens what is still too thin, as seen at points of its own.
 bool cover(Search& search, const FitPoints& dense, const BodyMotion& motion, double tolerance,
            std::vector<Unit>& units) {
-  for (const double under : {10.0, 100.0}) {
+  for (int round = 0; round < 2; ++round) {
     Cost cost = search.problem().cost;
-    cost.under = under;
+    cost.under *= 10.0;
     search.set_cost(cost);
     search.refine(k_last_steps);
   }
@@ -102,6 +102,8 @@ void check(const std::vector<std::vector<Transform>>& poses, const rig::Characte
     throw std::invalid_argument("a count of " + std::to_string(options.count) + ", not 1 to " +
                                 std::to_string(k_most_fit_shapes));
   if (options.samples < k_lanes || options.poses < 1) throw std::invalid_argument("too few samples or poses");
+  if (!(std::isfinite(options.under_weight) && options.under_weight > 0.0))
+    throw std::invalid_argument("a weight that is not above 0");
   const auto bad = [](const std::optional<double>& length) {
     return length && !(std::isfinite(*length) && *length >= 0.0);
   };
@@ -122,7 +124,9 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
   share.set(0.1);
 
   FitResult result;
-  Search search(points, motion, guard, {}, [&] { return share.keep_going(); });
+  Cost cost;
+  cost.under = options.under_weight;
+  Search search(points, motion, guard, cost, [&] { return share.keep_going(); });
   search.start(first_layout(points.skin, motion, character.skeleton));
   search.refine(k_first_steps);
   const auto note = [&](const Search& at) { result.curve.push_back(curve_point(at, points.blocks)); };

@@ -29,6 +29,7 @@ struct FitOptions {
   int count = 28;                  ///< shapes: a pair counts two. 1 to k_most_fit_shapes
   std::optional<double> max_error; ///< m: grow until p95 of both under and over is not above it; `count` is the limit
   std::optional<double> cover;     ///< m: no sample sticks out further than this
+  double under_weight = 1.0;       ///< of skin that sticks out, squared, against proxies that do; > 0
   FitRegion region = FitRegion::garment;
   bool symmetric = true; ///< where the body is; false: never
   int samples = 3000;    ///< of the skin, in each pose

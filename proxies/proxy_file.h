@@ -39,7 +39,7 @@ std::vector<Proxy> read_proxies(const std::filesystem::path& file, const rig::Sk
 
 /// Writes what read_proxies reads back (to 1e-15): anchors on one joint as joint points, blends of two origins as
 /// "between", others as points with weights. Throws std::invalid_argument, before it touches the file, on proxies that
-/// no file can say.
+/// no file can say. Names the schema where the file comes to stand beside it, as in assets/.
 void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& proxies, const rig::Skeleton& skeleton,
                    const std::optional<FitNote>& fit = {});
 

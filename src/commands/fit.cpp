@@ -38,6 +38,7 @@ struct Options {
   std::optional<std::string> motion, garment;
   int count = 28;
   std::optional<double> max_error_mm, cover_mm;
+  double under_weight = 1.0;
   bool no_symmetry = false;
   int influences = 4;
 };
@@ -202,6 +203,7 @@ int run(const Options& options) {
   fit.count = options.max_error_mm && options.count == Options{}.count ? 128 : options.count;
   if (options.max_error_mm) fit.max_error = 1e-3 * *options.max_error_mm;
   if (options.cover_mm) fit.cover = 1e-3 * *options.cover_mm;
+  fit.under_weight = options.under_weight;
   fit.region = region;
   fit.symmetric = !options.no_symmetry;
 
@@ -301,6 +303,12 @@ void add_fit(CLI::App& app, int& status) {
       ->default_str(fmt::format("{:g}", k_default_cover))
       ->check(finite_number())
       ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--under-weight", options->under_weight,
+                   "How much worse skin outside the proxies is than proxies outside the skin, squared")
+      ->check(finite_number())
+      ->check(CLI::Range(0.01, 100.0))
+      ->capture_default_str();
   command->add_option("--for", options->garment, "Scene or garment (.json): leave out what its cloth can never reach");
   command->add_option("--region", options->region, "garment: without head, hands and toes; body: all of it")
       ->check(CLI::IsMember({"garment", "body"}))
