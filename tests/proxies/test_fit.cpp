@@ -2,6 +2,7 @@
 #include "proxies/fit_refine.h"
 #include "proxies/proxy_file.h"
 #include "proxies/signed_distance.h"
+#include "rig/file_io.h"
 #include "rig/strong_poses.h"
 #include "tests/support/paths.h"
 
@@ -170,7 +171,7 @@ TEST(Fit, GivesTheSameBytesEachTime) {
   const auto folder = test::scratch_folder();
   for (const char* name : {"one.json", "two.json"})
     write_proxies(folder / name, fit_proxies(body, small_poses(body), quick(7)).proxies, body.skeleton);
-  EXPECT_EQ(read_file(folder / "one.json"), read_file(folder / "two.json"));
+  EXPECT_EQ(tutu::read_file(folder / "one.json"), read_file(folder / "two.json"));
 }
 
 TEST(Fit, KeepsToTheCount) {
