@@ -132,7 +132,7 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
   const auto note = [&](const Search& at) { result.curve.push_back(curve_point(at, points.blocks)); };
 
   note(search);
-  for (Search fewer = search; fewer.shape_count() > k_fewest_on_curve && share.keep_going();) {
+  for (Search fewer = search; fewer.shape_count() > std::min(k_fewest_on_curve, options.count) && share.keep_going();) {
     if (!fewer.shrink(fewer.shape_count())) break;
     note(fewer);
     if (fewer.shape_count() > options.count || search.shape_count() <= options.count) continue;

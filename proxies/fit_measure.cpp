@@ -16,7 +16,9 @@ namespace {
 
 using namespace fit;
 
-constexpr double k_fine = 5e-4;                      // m: cells of this radius end the search for a bound
+constexpr double k_fine = 5e-4; // m: cells of this radius end the search for a bound
+/// Cells looked at over all poses, at most, each way: the largest of those left is a bound too, if a wider one.
+constexpr int k_most_cells = 20000;
 constexpr double k_off_skin = 0.002, k_buried = 0.6; // as sample_skin has them
 constexpr double k_most_patches = 60e3;              // over all poses
 constexpr std::uint32_t k_seed = 20011;              // not that of a fit
@@ -106,7 +108,7 @@ double under_bound(const Scene& scene, double known) {
     Corner cell = triangle_cell(scene, {p[a], p[b], p[c]});
     if (cell.bound > known) cells.push(cell);
   }
-  while (!cells.empty()) {
+  for (int looked = 0; !cells.empty(); ++looked) {
     const Corner cell = cells.top();
     cells.pop();
     if (cell.bound <= known) break;
@@ -114,7 +116,7 @@ double under_bound(const Scene& scene, double known) {
     const auto buried = [&](const Vec3& point) { return scene.winding.at(point + k_off_skin * normal) > k_buried; };
     if (std::all_of(cell.at.begin(), cell.at.end(), buried) && buried((cell.at[0] + cell.at[1] + cell.at[2]) / 3.0))
       continue;
-    if (cell.bound - cell.value <= k_fine) return cell.bound;
+    if (cell.bound - cell.value <= k_fine || looked >= k_most_cells / scene.shapes.poses) return cell.bound;
     const Vec3 ab = 0.5 * (cell.at[0] + cell.at[1]), bc = 0.5 * (cell.at[1] + cell.at[2]),
                ca = 0.5 * (cell.at[2] + cell.at[0]);
     const std::array<std::array<Vec3, 3>, 4> parts = {
@@ -159,10 +161,10 @@ void measure_over(const Scene& scene, double size, Weighted& over, double& bound
       bound = std::max(bound, out->of_body);
     }
   }
-  while (!cells.empty() && cells.top().bound > bound) {
+  for (int looked = 0; !cells.empty() && cells.top().bound > bound; ++looked) {
     const PatchCell cell = cells.top();
     cells.pop();
-    if (cell.patch.radius <= k_fine) {
+    if (cell.patch.radius <= k_fine || looked >= k_most_cells / scene.shapes.poses) {
       bound = cell.bound;
       break;
     }

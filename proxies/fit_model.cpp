@@ -211,7 +211,7 @@ std::vector<Proxy> proxies_of(std::span<const Unit> units, const BodyMotion& mot
   for (const Unit& unit : units)
     for (int image = 0; image < unit.shapes(); ++image) {
       Proxy proxy;
-      proxy.kind = (unit.a - unit.b).norm() > 1e-3 ? ProxyKind::capsule : ProxyKind::sphere;
+      proxy.kind = (unit.a - unit.b).norm() > 2e-5 ? ProxyKind::capsule : ProxyKind::sphere;
       proxy.a = anchor_of(image ? mirrored(unit.a) : unit.a, image ? mirrored(unit.skin_a, motion) : unit.skin_a, rest);
       proxy.b = proxy.kind == ProxyKind::sphere ? proxy.a
                                                 : anchor_of(image ? mirrored(unit.b) : unit.b,

@@ -110,6 +110,16 @@ FitOptions quick(int count) {
   return options;
 }
 
+void set(fit::Unit& unit, fit::UnitKind kind, const Vec3& a, const Vec3& b, double radius, const fit::EndSkin& skin_a,
+         const fit::EndSkin& skin_b) {
+  unit.kind = kind;
+  unit.a = a;
+  unit.b = b;
+  unit.radius = radius;
+  unit.skin_a = skin_a;
+  unit.skin_b = skin_b;
+}
+
 TEST(Fit, RecoversACapsule) {
   const rig::Character body = body_of({{"Limb", -1, {0.1, 0.4, 0}}}, {{k_limb, 0}});
   const FitResult result = fit_proxies(body, rest_only(body), quick(1));
@@ -121,8 +131,9 @@ TEST(Fit, RecoversACapsule) {
   EXPECT_LT((b - k_limb.b).norm(), 5e-4);
   EXPECT_NEAR(result.proxies[0].radius, k_limb.radius, 5e-4);
   const FitError error = measure_fit(body, rest_only(body), result.proxies, FitRegion::garment, 2000);
-  EXPECT_LT(error.under.bound, 2e-3);
-  EXPECT_LT(error.over.bound, 2e-3);
+  // Where all cells are alike the bound is the radius of those that the budget leaves.
+  EXPECT_LT(error.under.bound, 4e-3);
+  EXPECT_LT(error.over.bound, 4e-3);
   EXPECT_LE(error.under.max, error.under.bound);
 }
 
@@ -134,9 +145,9 @@ TEST(Fit, MeasuresAShiftOnBothSides) {
   EXPECT_NEAR(error.under.max, 0.01, 1e-3);
   EXPECT_NEAR(error.over.max, 0.01, 1e-3);
   EXPECT_GE(error.under.bound, 0.0095);
-  EXPECT_LT(error.under.bound, 0.0115);
+  EXPECT_LT(error.under.bound, 0.0125);
   EXPECT_GE(error.over.bound, 0.0095);
-  EXPECT_LT(error.over.bound, 0.0115);
+  EXPECT_LT(error.over.bound, 0.0125);
 }
 
 TEST(Fit, FindsTwoLimbsAndWhatTheyRideOn) {
@@ -233,16 +244,10 @@ TEST(Fit, DerivativesAreThoseOfTheCost) {
   cost.guard.weight = 0.0; // its slope is that of a grid: only nearly the derivative of its value
   const fit::Problem problem{points.blocks, motion, guard, cost};
   std::vector<fit::Unit> units(3);
-  units[0] = {fit::UnitKind::middle, {0, 0.95, 0.01}, {0, 1.3, -0.02}, 0.11, {1, {0}, {1.0}}, {1, {0}, {1.0}}, {}, {}};
-  units[1] = {fit::UnitKind::pair,
-              {0.28, 1.28, 0.01},
-              {0.55, 1.22, 0.0},
-              0.045,
-              {2, {1, 0}, {0.8, 0.2}},
-              {1, {1}, {1.0}},
-              {},
-              {}};
-  units[2] = {fit::UnitKind::across, {0.1, 1.1, 0.0}, {}, 0.05, {1, {0}, {1.0}}, {}, {}, {}};
+  const fit::EndSkin on_hips{1, {0}, {1.0}}, on_arm{1, {1}, {1.0}}, on_both{2, {1, 0}, {0.8, 0.2}};
+  set(units[0], fit::UnitKind::middle, {0, 0.95, 0.01}, {0, 1.3, -0.02}, 0.11, on_hips, on_hips);
+  set(units[1], fit::UnitKind::pair, {0.28, 1.28, 0.01}, {0.55, 1.22, 0.0}, 0.045, on_both, on_arm);
+  set(units[2], fit::UnitKind::across, {0.1, 1.1, 0.0}, {-0.1, 1.1, 0.0}, 0.05, on_hips, on_hips);
   for (fit::Unit& unit : units) unit.settle(motion);
   fit::PosedShapes shapes;
   fit::Nearest nearest;
@@ -251,8 +256,11 @@ TEST(Fit, DerivativesAreThoseOfTheCost) {
   std::vector<fit::Hessian> hessians;
   std::vector<fit::Row> gradients;
   fit::accumulate(problem, units, shapes, nearest, hessians, gradients);
+  const std::vector<int> owners = nearest.shape;
+  int checked = 0;
   for (std::size_t u = 0; u < units.size(); ++u)
     for (int k = 0; k < 7; ++k) {
+      bool same_owners = true; // where a point changes its shape within the step, the slope has a kink
       constexpr double k_step = 1e-4;
       double there[2];
       for (const int side : {0, 1}) {
@@ -262,11 +270,15 @@ TEST(Fit, DerivativesAreThoseOfTheCost) {
         if (moved[u].kind == fit::UnitKind::middle) moved[u].a.x() = moved[u].b.x() = 0.0;
         if (moved[u].kind == fit::UnitKind::across) moved[u].b = fit::mirrored(moved[u].a);
         there[side] = fit::cost_of(problem, moved, shapes, nearest);
+        same_owners = same_owners && nearest.shape == owners;
       }
+      if (!same_owners) continue;
+      ++checked;
       const double slope = (there[1] - there[0]) / (2.0 * k_step);
       EXPECT_NEAR(2.0 * gradients[u][k], slope, 2e-3 * (1e-3 + std::abs(slope)) + 2e-6)
           << "unit " << u << ", parameter " << k;
     }
+  EXPECT_GE(checked, 14);
 }
 
 TEST(Fit, TheNearestShapeIsThatOfAllPairs) {
@@ -277,14 +289,10 @@ TEST(Fit, TheNearestShapeIsThatOfAllPairs) {
   std::vector<fit::Unit> units;
   for (int k = 0; k < 12; ++k) {
     const double u = 0.05 * k;
-    units.push_back({k % 2 ? fit::UnitKind::pair : fit::UnitKind::one,
-                     {0.1 + u, 0.9 + u, 0.0},
-                     {0.2 + u, 0.8 + u, 0.1},
-                     0.03,
-                     {1, {0}, {1.0}},
-                     {1, {0}, {1.0}},
-                     {},
-                     {}});
+    const fit::EndSkin on_hips{1, {0}, {1.0}};
+    units.emplace_back();
+    set(units.back(), k % 2 ? fit::UnitKind::pair : fit::UnitKind::one, {0.1 + u, 0.9 + u, 0.0},
+        {0.2 + u, 0.8 + u, 0.1}, 0.03, on_hips, on_hips);
     units.back().settle(motion);
   }
   fit::PosedShapes shapes;
