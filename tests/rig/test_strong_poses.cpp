@@ -1,5 +1,6 @@
-#include "rig/mannequin.h"
+#include "rig/character.h"
 #include "rig/strong_poses.h"
+#include "tests/support/paths.h"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +17,7 @@ TEST(StrongPoses, NamesTurnOver) {
 }
 
 TEST(StrongPoses, AreManyAndKeepBoneLengths) {
-  const Skeleton skeleton = make_mannequin().skeleton;
+  const Skeleton skeleton = import_character(test::source_file("assets/characters/dancer.dae")).character.skeleton;
   const std::vector<NamedPose> poses = strong_poses(skeleton);
   EXPECT_GE(poses.size(), 35u);
   EXPECT_LE(poses.size(), 50u);
@@ -30,7 +31,7 @@ TEST(StrongPoses, AreManyAndKeepBoneLengths) {
 }
 
 TEST(StrongPoses, RaiseTheLegThatTheyName) {
-  const Skeleton skeleton = make_mannequin().skeleton;
+  const Skeleton skeleton = import_character(test::source_file("assets/characters/dancer.dae")).character.skeleton;
   const int hip = *skeleton.find("LeftUpLeg"), knee = *skeleton.find("LeftLeg");
   const std::vector<NamedPose> poses = strong_poses(skeleton);
   ASSERT_EQ(poses[1].name, "leg to the front");
