@@ -9,8 +9,9 @@
 
 namespace tutu::cloth {
 
-/// Cloth that hangs may be longer than at rest by this factor: ten times what the median frame stretches it.
-inline constexpr double k_reach_stretch = 1.1;
+/// Cloth that hangs may be longer than at rest by this factor: over what 99 of 100 threads of the dance give by ten
+/// times, though not over the worst of a slit's upper end.
+inline constexpr double k_reach_stretch = 1.2;
 
 /// Conservative: a particle is never farther from the pin it hangs on than the cloth between them is long, whatever the
 /// motion does (build_tethers), and a point between particles is near one of them. One ball a pin. Immutable.

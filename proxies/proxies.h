@@ -21,6 +21,7 @@
 #include "proxies/contact.h"         // IWYU pragma: export
 #include "proxies/error_figures.h"   // IWYU pragma: export
 #include "proxies/feature_contact.h" // IWYU pragma: export
+#include "proxies/fit.h"             // IWYU pragma: export
 #include "proxies/proxy_file.h"      // IWYU pragma: export
 #include "proxies/shapes.h"          // IWYU pragma: export
 #include "proxies/signed_distance.h" // IWYU pragma: export

@@ -193,6 +193,23 @@ private:
   std::vector<Transform> rest_; // model_from_joint
 };
 
+FitNote::Side fit_side(const JsonValue& value) {
+  value.only_keys({"p95", "max", "bound"});
+  return {value.at("p95").non_negative(), value.at("max").non_negative(), value.at("bound").non_negative()};
+}
+
+FitNote fit_note(const JsonValue& value) {
+  value.only_keys({"character", "motion", "region", "poses", "under_mm", "over_mm"});
+  FitNote note;
+  note.character = value.at("character").string();
+  note.motion = value.at("motion").string();
+  note.region = value.at("region").string();
+  note.poses = value.at("poses").integer_in(1, 1000000);
+  note.under_mm = fit_side(value.at("under_mm"));
+  note.over_mm = fit_side(value.at("over_mm"));
+  return note;
+}
+
 // --- writing -------------------------------------------------------------------------------------------------------
 
 using Json = nlohmann::ordered_json;
@@ -272,11 +289,21 @@ Json shape_of(const Proxy& proxy, const rig::Skeleton& skeleton, std::span<const
   return shape;
 }
 
+Json json_of(const FitNote& note) {
+  const auto rounded = [](double mm) { return std::round(100.0 * mm) / 100.0; };
+  const auto side = [&](const FitNote::Side& s) {
+    return Json{{"p95", rounded(s.p95)}, {"max", rounded(s.max)}, {"bound", rounded(s.bound)}};
+  };
+  return {{"character", note.character}, {"motion", note.motion},           {"region", note.region},
+          {"poses", note.poses},         {"under_mm", side(note.under_mm)}, {"over_mm", side(note.over_mm)}};
+}
+
 } // namespace
 
 std::vector<Proxy> read_proxies(const std::filesystem::path& file, const rig::Skeleton& skeleton) {
   const JsonValue root = JsonValue::read(file);
-  root.only_keys({"proxies"});
+  root.only_keys({"fit", "proxies"});
+  if (const auto fit = root.find("fit")) fit_note(*fit);
   const Reader reader(skeleton);
   std::vector<Proxy> proxies;
   std::set<std::string> names;
@@ -288,11 +315,20 @@ std::vector<Proxy> read_proxies(const std::filesystem::path& file, const rig::Sk
   return proxies;
 }
 
-void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& proxies,
-                   const rig::Skeleton& skeleton) {
+std::optional<FitNote> read_fit_note(const std::filesystem::path& file) {
+  const auto fit = JsonValue::read(file).find("fit");
+  return fit ? std::optional(fit_note(*fit)) : std::nullopt;
+}
+
+void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& proxies, const rig::Skeleton& skeleton,
+                   const std::optional<FitNote>& fit) {
   const std::vector<Transform> rest = rig::rest_model(skeleton);
   // One proxy a line: a list that a person reads and a version control compares.
-  std::string text = "{ \"proxies\": [";
+  std::string text = "{ ";
+  constexpr const char* k_schema = "../schema/proxies.schema.json";
+  if (std::filesystem::exists(file.parent_path() / k_schema)) text += std::string("\"$schema\": \"") + k_schema + "\",\n  ";
+  if (fit) text += "\"fit\": " + json_of(*fit).dump() + ",\n  ";
+  text += "\"proxies\": [";
   std::set<std::string> names;
   for (const Proxy& proxy : proxies) {
     require_writable(proxy, skeleton);

@@ -17,9 +17,21 @@
 #include "proxies/collider.h"
 
 #include <filesystem>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace tutu::proxies {
+
+/// What `tutu fit` says in the file about the proxies it made: "fit". Lengths in mm, as in the file.
+struct FitNote {
+  struct Side {
+    double p95 = 0.0, max = 0.0, bound = 0.0;
+  };
+  std::string character, motion, region; ///< file names; "strong poses" where no clip was given
+  int poses = 0;                         ///< in which it was measured
+  Side under_mm, over_mm;                ///< FitError of fit.h
+};
 
 /// Throws InputError with file, JSON pointer, found and expected: unknown joint or key, radius <= 0, two proxies with
 /// one name, both or neither shape. A proxy without a name is called after its joint and place in the list.
@@ -27,7 +39,11 @@ std::vector<Proxy> read_proxies(const std::filesystem::path& file, const rig::Sk
 
 /// Writes what read_proxies reads back (to 1e-15): anchors on one joint as joint points, blends of two origins as
 /// "between", others as points with weights. Throws std::invalid_argument, before it touches the file, on proxies that
-/// no file can say.
-void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& proxies, const rig::Skeleton& skeleton);
+/// no file can say. Names the schema where the file comes to stand beside it, as in assets/.
+void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& proxies, const rig::Skeleton& skeleton,
+                   const std::optional<FitNote>& fit = {});
+
+/// The file's "fit", where it has one. Throws InputError as read_proxies.
+std::optional<FitNote> read_fit_note(const std::filesystem::path& file);
 
 } // namespace tutu::proxies

@@ -22,4 +22,5 @@
 #include "rig/mesh.h"         // IWYU pragma: export
 #include "rig/skeleton.h"     // IWYU pragma: export
 #include "rig/skin.h"         // IWYU pragma: export
+#include "rig/strong_poses.h" // IWYU pragma: export
 #include "rig/surface.h"      // IWYU pragma: export

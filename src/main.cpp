@@ -13,6 +13,7 @@ int main(int argc, char** argv) {
   int status = k_ok;
   add_play(app, status);
   add_drape(app, status);
+  add_fit(app, status);
   add_inspect(app, status);
   add_validate(app, status);
   add_mannequin(app, status);

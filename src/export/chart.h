@@ -1,0 +1,29 @@
+// Charts by gnuplot.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tutu::app {
+
+/// One line of a chart: name and points.
+struct ChartLine {
+  std::string name;
+  std::vector<std::pair<double, double>> points;
+  bool right_axis = false;
+};
+
+struct Chart {
+  std::string title, x, y, right; ///< what the axes say; `right` empty: there is none
+  std::vector<ChartLine> lines;
+};
+
+/// Throws InputError on a name that ends neither in .svg nor in .png, and where there is no gnuplot on the PATH: ask
+/// before long work.
+void require_chart(const std::filesystem::path& file);
+
+/// Draws it. Throws as require_chart, and std::runtime_error with gnuplot's words when it fails.
+void write_chart(const Chart& chart, const std::filesystem::path& file);
+
+} // namespace tutu::app
