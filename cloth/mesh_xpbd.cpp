@@ -8,7 +8,6 @@
 
 namespace tutu::cloth {
 
-
 template <class Scalar>
 MeshXpbd<Scalar>::MeshXpbd(const Garment& garment)
     : garment_(&garment), pinned_(pinned_flags(garment)), x_(garment.rest_positions.size()),

@@ -326,7 +326,8 @@ void write_proxies(const std::filesystem::path& file, const std::vector<Proxy>& 
   // One proxy a line: a list that a person reads and a version control compares.
   std::string text = "{ ";
   constexpr const char* k_schema = "../schema/proxies.schema.json";
-  if (std::filesystem::exists(file.parent_path() / k_schema)) text += std::string("\"$schema\": \"") + k_schema + "\",\n  ";
+  if (std::filesystem::exists(file.parent_path() / k_schema))
+    text += std::string("\"$schema\": \"") + k_schema + "\",\n  ";
   if (fit) text += "\"fit\": " + json_of(*fit).dump() + ",\n  ";
   text += "\"proxies\": [";
   std::set<std::string> names;

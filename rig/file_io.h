@@ -11,8 +11,9 @@ namespace tutu {
 std::string read_file(const std::filesystem::path& file);
 
 /// Writes to a temporary name beside `file`, flushes it to disk, then renames: `file` is the old one or the
-/// whole new one, never a part. Follows a symbolic link; a pipe or a device is simply written to. Throws InputError when it
-/// cannot be a file (a folder, or in no folder), else std::runtime_error with the system's reason; leaves no temporary.
+/// whole new one, never a part. Follows a symbolic link; a pipe or a device is simply written to. Throws InputError
+/// when it cannot be a file (a folder, or in no folder), else std::runtime_error with the system's reason; leaves no
+/// temporary.
 void write_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// For writers that need a path of their own (a video encoder, say): write to `temporary()`, then `commit()`.

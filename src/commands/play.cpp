@@ -43,7 +43,8 @@ void check(const Options& options) {
   const fs::path out = options.out;
   const std::string suffix = out.extension().string();
   const std::vector<std::string> pictures = {".png", ".jpg", ".jpeg", ".gif", ".avi", ".mov", ".mkv", ".webm"};
-  if ((!options.at.empty() || options.worst) && suffix == ".mp4") throw InputError("", "--out", options.out, "a folder for the pictures");
+  if ((!options.at.empty() || options.worst) && suffix == ".mp4")
+    throw InputError("", "--out", options.out, "a folder for the pictures");
   if (std::find(pictures.begin(), pictures.end(), suffix) != pictures.end())
     throw InputError("", "--out", options.out, "a film (.mp4) or a folder");
   if (options.worst && options.frames) throw InputError("", "--worst", "it with --frames", "one of the two");

@@ -1,4 +1,5 @@
 // The pieces between a scene file and a moving scene.
+#include "proxies/proxy_file.h"
 #include "rig/error.h"
 #include "rig/file_io.h"
 #include "src/scene/scene_player.h"
@@ -33,10 +34,12 @@ TEST(Scene, TheDanceIsWhatTheReportHad) {
   EXPECT_EQ(scene.garments[0].particle_count(), 30 * 30);
   EXPECT_EQ(scene.garments[0].seams.size(), 10u) << "sewn from the waist down to a third";
   EXPECT_EQ(scene.garments[1].particle_count(), 15 * 15);
+  EXPECT_EQ(scene.proxies.size(), 36u) << "fitted";
+  const auto by_hand = proxies::read_proxies(source_file("assets/proxies/dancer-hand.json"), scene.character.skeleton);
   int spheres = 0;
-  for (const proxies::Proxy& proxy : scene.proxies) spheres += proxy.kind == proxies::ProxyKind::sphere;
+  for (const proxies::Proxy& proxy : by_hand) spheres += proxy.kind == proxies::ProxyKind::sphere;
   EXPECT_EQ(spheres, 9);
-  EXPECT_EQ(scene.proxies.size(), 27u);
+  EXPECT_EQ(by_hand.size(), 27u);
 }
 
 TEST(Scene, TheClipClosesItsLoop) {

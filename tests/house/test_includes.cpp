@@ -61,7 +61,8 @@ TEST(House, TheOrderCheckSeesAWrongInclude) {
 }
 
 TEST(House, FclStaysBehindItsAdapter) {
-  const std::set<std::string> adapter = {"proxies/broad_phase.cpp", "proxies/mesh_tree.cpp", "proxies/narrow_phase.cpp"};
+  const std::set<std::string> adapter = {"proxies/broad_phase.cpp", "proxies/mesh_tree.cpp",
+                                         "proxies/narrow_phase.cpp"};
   std::set<std::string> users;
   for (const std::string& folder : k_order)
     for (const Include& include : includes_below(folder))

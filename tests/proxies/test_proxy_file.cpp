@@ -137,7 +137,8 @@ TEST(ProxyFile, ErrorsNamePlaceFoundAndExpected) {
   expect_error(capsule(R"({"point": [0,0,0], "joints": [["Hips",1],["Hips",1]]})"), b + "/joints/1/0", "once");
   expect_error(capsule(R"({"point": [0,0,0], "joints": [["Hips",0]]})"), b + "/joints/0/1", "above 0");
   expect_error(capsule(R"({"point": [0,0,0], "joints": [["Hips"]]})"), b + "/joints/0", "weight");
-  expect_error(capsule(R"({"point": [0,0,0], "joints": [["Hips",1e308],["Head",1e308]]})"), b + "/joints/0/1", "finite");
+  expect_error(capsule(R"({"point": [0,0,0], "joints": [["Hips",1e308],["Head",1e308]]})"), b + "/joints/0/1",
+               "finite");
 
   expect_error(R"({"name": "x", )" + ball.substr(1) + R"(, {"name": "x", )" + ball.substr(1), "/proxies/1",
                "second time");
