@@ -1,47 +1,19 @@
-// Nothing allocates in a step once it is warm: counted by replacing the global operator new of this program.
+// Nothing allocates in a step once it is warm: by counting.
 #include "cloth/adaptive_substeps.h"
 #include "cloth/recovery.h"
 #include "cloth/self_collision.h"
 #include "tests/cloth/two_layers.h"
+#include "tests/support/counted_allocations.h"
 #include "tests/support/swinging_limbs.h"
 #include "tests/support/woven_cases.h"
 
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <gtest/gtest.h>
-#include <new>
-
-namespace {
-std::atomic<long> allocations{0};
-
-void* counted(std::size_t size, std::size_t alignment) {
-  ++allocations;
-  const std::size_t whole = (std::max<std::size_t>(size, 1) + alignment - 1) / alignment * alignment;
-  if (void* memory = std::aligned_alloc(alignment, whole)) return memory;
-  throw std::bad_alloc();
-}
-} // namespace
-
-// GCC 12 pairs the replaced operators wrongly when it inlines one of them.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-
-void* operator new(std::size_t size) { return counted(size, alignof(std::max_align_t)); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  return counted(size, static_cast<std::size_t>(alignment));
-}
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
-  ++allocations;
-  return std::malloc(std::max<std::size_t>(size, 1));
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 
 namespace {
 
 using namespace tutu;
+using test::allocations;
 using namespace tutu::cloth;
 
 /// A skirt in a periodic dance: warm after a few periods.

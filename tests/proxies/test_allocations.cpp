@@ -1,30 +1,14 @@
-// Nothing allocates in the frame loop: counted by replacing the global operator new of this program.
+// Nothing allocates in the frame loop: by counting.
 #include "proxies/collision_query.h"
 #include "tests/support/collider_scenes.h"
+#include "tests/support/counted_allocations.h"
 
-#include <atomic>
-#include <cstdlib>
 #include <gtest/gtest.h>
-#include <new>
-
-namespace {
-std::atomic<long> allocations{0};
-}
-
-// GCC 12 pairs the replaced operators wrongly when it inlines one of them.
-#pragma GCC diagnostic ignored "-Wmismatched-new-delete"
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size ? size : 1)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
 using namespace tutu;
+using test::allocations;
 using namespace tutu::proxies;
 
 TEST(Allocations, NoneInTheFrameLoopOfAnyBackend) {
