@@ -1,6 +1,5 @@
 // tutu fit: proxies for a character, and what they cost in error.
 #include "proxies/fit.h"
-#include "cloth/garment_file.h"
 #include "proxies/proxy_file.h"
 #include "proxies/signed_distance.h"
 #include "rig/clip_file.h"
@@ -14,6 +13,7 @@
 #include "src/interrupt.h"
 #include "src/progress.h"
 #include "src/scene/garment_reach.h"
+#include "src/scene/worn_garment.h"
 
 #include <algorithm>
 #include <chrono>
@@ -84,22 +84,9 @@ Garments garments_for(const Options& options, const rig::Character& character) {
   if (JsonValue::read(file).has("character")) entries = read_scene(file).garments;
   if (entries.empty()) throw InputError(file.string(), "/garments", "none", "at least one garment");
   for (const GarmentEntry& entry : entries) {
-    cloth::Garment garment =
-        cloth::build_garment(cloth::fitted(cloth::read_garment(entry.file), entry.scale, entry.offset));
-    const SkinPins skin_pins = bind_to_skin(garment, character);
-    std::vector<int> joints;
-    for (std::size_t a = 0; a < garment.attachments.size(); ++a) {
-      const std::string& name = garment.attachments[a].joint;
-      const auto joint = garment.attachments[a].skin
-                             ? std::optional(main_joint(skin_pins, garment, static_cast<int>(a)))
-                             : character.skeleton.find(name);
-      if (!joint)
-        throw InputError(entry.file.string(), "/attachments/" + std::to_string(a) + "/joint", '"' + name + '"',
-                         "a joint of " + options.character);
-      joints.push_back(*joint);
-    }
-    result.garments.push_back(std::move(garment));
-    result.joints.push_back(std::move(joints));
+    WornGarment worn = put_on(entry, character, options.character);
+    result.garments.push_back(std::move(worn.garment));
+    result.joints.push_back(std::move(worn.joints));
   }
   return result;
 }

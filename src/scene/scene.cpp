@@ -1,8 +1,8 @@
 #include "src/scene/scene.h"
 
-#include "cloth/garment_file.h"
 #include "proxies/proxy_file.h"
 #include "rig/error.h"
+#include "src/scene/worn_garment.h"
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -70,28 +70,12 @@ Scene load_scene(const SceneDescription& description) {
   scene.clip = load_motion(description, import, scene.notes);
   scene.character = std::move(import.character);
 
-  const rig::Skeleton& skeleton = scene.character.skeleton;
-  if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, skeleton);
+  if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, scene.character.skeleton);
   for (const GarmentEntry& entry : description.garments) {
-    cloth::Garment garment =
-        cloth::build_garment(cloth::fitted(cloth::read_garment(entry.file), entry.scale, entry.offset));
-    SkinPins skin_pins = bind_to_skin(garment, scene.character);
-    std::vector<int> joints;
-    for (std::size_t a = 0; a < garment.attachments.size(); ++a) {
-      if (garment.attachments[a].skin) {
-        joints.push_back(main_joint(skin_pins, garment, static_cast<int>(a)));
-        continue;
-      }
-      const std::string& name = garment.attachments[a].joint;
-      const auto joint = skeleton.find(name);
-      if (!joint)
-        throw InputError(entry.file.string(), "/attachments/" + std::to_string(a) + "/joint", '"' + name + '"',
-                         "a joint of " + description.character.string());
-      joints.push_back(*joint);
-    }
-    scene.attachment_joints.push_back(std::move(joints));
-    scene.skin_pins.push_back(std::move(skin_pins));
-    scene.garments.push_back(std::move(garment));
+    WornGarment worn = put_on(entry, scene.character, description.character.string());
+    scene.attachment_joints.push_back(std::move(worn.joints));
+    scene.skin_pins.push_back(std::move(worn.skin_pins));
+    scene.garments.push_back(std::move(worn.garment));
   }
   return scene;
 }
