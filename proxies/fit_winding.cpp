@@ -1,5 +1,7 @@
 #include "proxies/fit_winding.h"
 
+#include "proxies/solid_angle.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,12 +12,6 @@ namespace {
 constexpr int k_group = 16;   // triangles
 constexpr int k_large = 16;   // groups
 constexpr float k_far = 1.8f; // a group is far from this many of its radii on
-
-/// Signed, of a triangle [van Oosterom and Strackee 1983, eq. 8].
-double solid_angle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double la = a.norm(), lb = b.norm(), lc = c.norm();
-  return 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-}
 
 } // namespace
 
@@ -104,9 +100,11 @@ double Winding::at(const Vec3& point) const {
   const auto exact = [&](int group) {
     double sum = 0.0;
     const std::size_t from = static_cast<std::size_t>(group) * k_group;
-    for (std::size_t t = from; t < std::min(triangles_.size(), from + k_group); ++t)
-      sum += fit::solid_angle(positions_[triangles_[t][0]] - point, positions_[triangles_[t][1]] - point,
-                              positions_[triangles_[t][2]] - point);
+    for (std::size_t t = from; t < std::min(triangles_.size(), from + k_group); ++t) {
+      const HalfSolidAngle half = half_solid_angle(point, positions_[triangles_[t][0]], positions_[triangles_[t][1]],
+                                                   positions_[triangles_[t][2]]);
+      sum += 2.0 * std::atan2(half.y, half.x);
+    }
     return sum;
   };
   const int small = static_cast<int>(small_.x.size());
