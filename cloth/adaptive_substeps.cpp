@@ -60,9 +60,9 @@ SubstepPlan plan_substeps(const FrameInput& input, const Extent& garment, double
     const double half_turn = half_turn_of(input.colliders, c);
     const double chord = std::max((end.a - start.a).norm(), (end.b - start.b).norm());
     const double bulge = 0.5 * chord * std::tan(0.5 * half_turn); // of the arc beyond its chord
-    if (!is_near(start, end, start.radius + contact_offset + cloth_way + bulge, garment)) continue;
+    if (!is_near(start, end, start.widest() + contact_offset + cloth_way + bulge, garment)) continue;
     const double collider_way = arc_over(chord, half_turn);
-    const double safe_way = k_safe_share * (start.radius + contact_offset);
+    const double safe_way = k_safe_share * (start.narrowest() + contact_offset);
     const double needed = std::ceil((collider_way + cloth_way) / safe_way);
     if (!(needed > most)) continue;
     most = needed;

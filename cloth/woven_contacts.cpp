@@ -17,6 +17,13 @@ template <class T> void copy(const Vec3& from, T* to) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<T>(from[axis]);
 }
 
+/// The capsule where both end balls count; where one held the other in `now`, that ball.
+proxies::Capsule without_swallowed(const proxies::Capsule& capsule, const proxies::Capsule& now) {
+  if (now.taper == 0.0 || (now.b - now.a).squaredNorm() > now.taper * now.taper) return capsule;
+  const Vec3& centre = now.taper > 0.0 ? capsule.b : capsule.a;
+  return {centre, centre, now.widest(), 0.0};
+}
+
 } // namespace
 
 template <class T>
@@ -93,7 +100,8 @@ template <class T> void WovenContacts<T>::place(const Vec3& origin, double s, do
   proxies::colliders_at(input_->colliders, s, placed_);
   const double push_speed_step = k_push_out_speed * h;
   for (std::size_t k = 0; k < placed_.size(); ++k) {
-    const proxies::Capsule &now = placed_[k], &before = placed_before_[k];
+    const proxies::Capsule now = without_swallowed(placed_[k], placed_[k]),
+                           before = without_swallowed(placed_before_[k], placed_[k]);
     WovenCollider<T>& c = colliders_[k];
     const Vec3 axis = now.b - now.a, move_a = now.a - before.a, move_b = now.b - before.b;
     const double squared = axis.squaredNorm();
@@ -102,6 +110,8 @@ template <class T> void WovenContacts<T>::place(const Vec3& origin, double s, do
     copy(axis, c.axis);
     c.per_axis_squared = is_sphere ? T(0) : static_cast<T>(1.0 / squared);
     c.radius = static_cast<T>(now.radius + offset_);
+    c.taper = static_cast<T>(now.taper);
+    c.lean = now.taper == 0.0 ? T(0) : static_cast<T>(now.taper / std::sqrt(squared * (squared - now.taper * now.taper)));
     copy(move_a, c.move_a);
     copy(Vec3(move_b - move_a), c.move_axis);
     Vec3 spin = Vec3::Zero();
@@ -155,7 +165,7 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
       if (swept_ && pair.collider != ground && travelled >= pair.wake - tile.reach) {
         // So near a cell of the tile may be. What moves this fast may also tear cells longer than any rule for cells at
         // rest reckons with: then all of their features are asked.
-        const double safe = proxies::safe_motion(placed_[pair.collider].radius, offset_);
+        const double safe = proxies::safe_motion(placed_[pair.collider].narrowest(), offset_);
         const double motion = tile.way + static_cast<double>(colliders_[pair.collider].moved);
         pair.in_haste = motion >= 0.5 * safe && features_ != ContactFeatures::particles;
         if (motion >= safe) sweep(sheet, tile, pair);
@@ -193,7 +203,7 @@ template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(con
     pair.features = all_features(tile);
     return pair;
   }
-  const double radius = placed_[collider].radius, clear = radius - k_tolerated_poke;
+  const double radius = placed_[collider].narrowest(), clear = radius - k_tolerated_poke;
   const double weft = k_worn_cell * tile.weft, warp = k_worn_cell * tile.warp;
   // The middle of a triangle bent around the collider with legs of length h lies (2/9) h^2 within the square of its
   // corners' distance from the axis: it clears all but k_tolerated_poke when the corners keep this from the axis.

@@ -75,11 +75,14 @@ template <class T> struct WovenStep {
   int closing_sweeps = 1; ///< Gauss-Seidel over the warp edges after it
 };
 
-/// A placed collider. With no direction (a == b) it is a sphere.
+/// A placed collider. With no direction (a == b) it is a sphere. A capsule whose one end ball holds the other comes as
+/// that ball.
 template <class T> struct WovenCollider {
   T a[3] = {}, axis[3] = {};           ///< axis = b - a, m
   T per_axis_squared = 0;              ///< 1 / |axis|^2; 0 for a sphere
-  T radius = 0;                        ///< with the contact offset, m
+  T radius = 0;                        ///< at a, with the contact offset, m
+  T taper = 0;                         ///< added by b, m
+  T lean = 0;                          ///< taper / (|axis| sqrt(|axis|^2 - taper^2)), 1/m
   T move_a[3] = {}, move_axis[3] = {}; ///< since the substep's start: of a, and of b less that of a
   T spin[3] = {};                      ///< rotation vector since then about the own axis (a sphere: about any), rad
   T on_axis[3] = {};                   ///< normal for points on the axis

@@ -29,9 +29,10 @@ struct Proxy {
   std::string name; ///< unique in its set
   ProxyKind kind = ProxyKind::sphere;
   Anchor a, b;           ///< end points; the same twice for a sphere
-  double radius = 0.0;   ///< m, > 0
+  double radius = 0.0;   ///< m, > 0; of a capsule at a
   double friction = 0.3; ///< Coulomb coefficient against cloth, >= 0
   bool enabled = true;
+  double taper = 0.0; ///< m, added to the radius by b (Capsule); 0 for a sphere
 };
 
 } // namespace tutu::proxies

@@ -82,10 +82,11 @@ Capsule capsule_at(const Capsule& start, const Capsule& end, double s) {
   if (s == 0.0) return start;
   if (s == 1.0) return end;
   const HalfAxis from = half_axis(start), to = half_axis(end);
-  if (!goes_on_an_arc(from, to)) return {on_the_way(start.a, end.a, s), on_the_way(start.b, end.b, s), start.radius};
+  if (!goes_on_an_arc(from, to))
+    return {on_the_way(start.a, end.a, s), on_the_way(start.b, end.b, s), start.radius, start.taper};
   const Vec3 middle = (0.5 - 0.5 * s) * (start.a + start.b) + (0.5 * s) * (end.a + end.b);
   const Vec3 half = ((1.0 - s) * from.length + s * to.length) * turned(from.direction, to.direction, s);
-  return {middle - half, middle + half, start.radius};
+  return {middle - half, middle + half, start.radius, start.taper};
 }
 
 AxisMotion axis_motion(const Capsule& start, const Capsule& end) {
@@ -99,25 +100,26 @@ AxisMotion axis_motion(const Capsule& start, const Capsule& end) {
 }
 
 Box swept_box(const Capsule& start, const Capsule& end) {
-  Box box(start.a);
-  box.extend(start.b).extend(end.a).extend(end.b);
-  const Vec3 grown = Vec3::Constant(std::max(start.radius, end.radius) + bulge(start, end));
-  return {box.min() - grown, box.max() + grown};
+  const double bulges = bulge(start, end);
+  Box box;
+  for (const Capsule* pose : {&start, &end})
+    for (const double t : {0.0, 1.0}) {
+      const Vec3 centre = t == 0.0 ? pose->a : pose->b, grown = Vec3::Constant(pose->radius_at(t) + bulges);
+      box.extend(Box(centre - grown, centre + grown));
+    }
+  return box;
 }
 
 Capsule swept_cover(const Capsule& start, const Capsule& end) {
   const double way = std::max((end.a - start.a).norm(), (end.b - start.b).norm());
-  return {0.5 * (start.a + end.a), 0.5 * (start.b + end.b),
-          std::max(start.radius, end.radius) + 0.5 * way + bulge(start, end)};
+  return {0.5 * (start.a + end.a), 0.5 * (start.b + end.b), start.radius + 0.5 * way + bulge(start, end), start.taper};
 }
 
 Vec3 surface_motion(const Capsule& before, const Capsule& now, const Vec3& spin_since_before, const Vec3& point) {
-  const Vec3 axis = now.b - now.a;
-  const double length_squared = axis.squaredNorm();
-  const double t = length_squared > 0.0 ? std::clamp((point - now.a).dot(axis) / length_squared, 0.0, 1.0) : 0.0;
-  const Vec3 away = point - (now.a + t * axis);
+  const double t = nearest_on_axis(point, now), radius = now.radius_at(t);
+  const Vec3 away = point - (now.a + t * (now.b - now.a));
   const double distance = away.norm();
-  const Vec3 arm = distance > k_on_axis ? Vec3(now.radius / distance * away) : Vec3(now.radius * normal_on_axis(now));
+  const Vec3 arm = distance > k_on_axis ? Vec3(radius / distance * away) : Vec3(radius * normal_on_axis(now));
   Vec3 turn = spin_since_before; // a sphere has nothing else to tell by
   const HalfAxis was = half_axis(before), is = half_axis(now);
   if (is.length > k_on_axis) {

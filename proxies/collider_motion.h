@@ -9,7 +9,7 @@ namespace tutu::proxies {
 /// The capsule at `s` in [0, 1] of the way: its middle on a straight line, its axis turned evenly along the shorter
 /// arc, its length changing evenly, so that a limb that turns does not shorten. s = 0 and s = 1 give the ends' own
 /// bits, and so does every s where the capsule does not move. A sphere's centre, and both ends where an axis has no
-/// length or turns by half a turn (no arc is the shorter), go on straight lines. `end` has the radius of `start`.
+/// length or turns by half a turn (no arc is the shorter), go on straight lines. `end` has the radii of `start`.
 Capsule capsule_at(const Capsule& start, const Capsule& end, double s);
 
 /// How a capsule's axis moves on that way; the time unit is the whole way. With h = (b - a) / 2 at any moment,

@@ -38,7 +38,7 @@ void colliders_at(const SweptColliders& colliders, double s, std::span<Capsule> 
 ColliderSet::ColliderSet(std::vector<Proxy> proxies, std::optional<Plane> ground)
     : proxies_(std::move(proxies)), ground_(std::move(ground)) {
   std::erase_if(proxies_, [](const Proxy& proxy) { return !proxy.enabled; });
-  for (const Proxy& proxy : proxies_) start_.push_back({Vec3::Zero(), Vec3::Zero(), proxy.radius});
+  for (const Proxy& proxy : proxies_) start_.push_back({Vec3::Zero(), Vec3::Zero(), proxy.radius, proxy.taper});
   end_ = start_;
   rotations_.assign(proxies_.size(), Quat::Identity());
   spin_.assign(proxies_.size(), Vec3::Zero());

@@ -14,7 +14,7 @@ namespace tutu::proxies {
 /// Colliders as plain shapes in world space at both ends of a frame. Collider i of all spans is the same one; index
 /// size() is the ground, where there is one. Does not own anything.
 struct SweptColliders {
-  std::span<const Capsule> start, end; ///< equal lengths, equal radii
+  std::span<const Capsule> start, end; ///< equal lengths, equal radii and tapers
   std::optional<Plane> ground;
   /// Rotation vector of each collider from start to end, world, rad: what its surface does that its two ends do not
   /// show (a sphere has one point only). Empty: none of them turns.

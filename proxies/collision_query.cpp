@@ -65,24 +65,34 @@ public:
     const Capsule cover = swept_cover(start, end);
     from_ = cover.a;
     axis_ = cover.b - cover.a;
-    const double length_squared = axis_.squaredNorm();
+    const double length_squared = axis_.squaredNorm(), upright = length_squared - cover.taper * cover.taper;
     share_of_axis_ = length_squared > k_least_square ? 1.0 / length_squared : 0.0;
-    const double limit = cover.radius + reach + (share_of_axis_ > 0.0 ? 0.0 : axis_.norm());
-    limit_squared_ = limit * limit;
+    limit_ = cover.radius + reach;
+    if (cover.taper != 0.0 && upright > k_least_square) {
+      taper_ = cover.taper;
+      lean_ = taper_ / std::sqrt(length_squared * upright);
+    } else if (share_of_axis_ == 0.0 || cover.taper != 0.0) { // one ball about a holds it
+      limit_ = cover.widest() + reach + axis_.norm();
+      share_of_axis_ = 0.0;
+    }
   }
 
   bool holds(const Vec3& point) const {
     const Vec3 from = point - from_;
-    const double t = std::clamp(from.dot(axis_) * share_of_axis_, 0.0, 1.0);
-    return (from - t * axis_).squaredNorm() <= limit_squared_;
+    const double foot = from.dot(axis_) * share_of_axis_;
+    // As in nearest_on_axis.
+    const double t = std::clamp(lean_ == 0.0 ? foot : foot + (from - foot * axis_).norm() * lean_, 0.0, 1.0);
+    const double limit = limit_ + t * taper_;
+    return (from - t * axis_).squaredNorm() <= limit * limit;
   }
 
 private:
   static constexpr double k_least_square = 1e-200; // m2; shorter axes (1e-100 m) count as points: 1 / it is finite
 
   Vec3 from_, axis_;
-  double share_of_axis_ = 0.0; // 1 / |axis|^2; 0 for a sphere
-  double limit_squared_ = 0.0;
+  double share_of_axis_ = 0.0;         // 1 / |axis|^2; 0 for a sphere
+  double limit_ = 0.0;                 // distance from the axis at a
+  double taper_ = 0.0, lean_ = 0.0;
 };
 
 void find_neighbourhoods(const SweptColliders& colliders, double reach, std::vector<Neighbourhood>& out) {

@@ -3,6 +3,7 @@
 #include "proxies/signed_distance.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace tutu::proxies {
@@ -16,7 +17,7 @@ constexpr double k_flat = 1e-12;
 
 /// Where the smallest distance is looked for.
 struct Nearest {
-  double squared; // of the distance between cloth and axis
+  double distance; // of the cloth from the surface
   double on_axis;
   std::array<double, 3> weights;
   ClothFeature feature;
@@ -31,7 +32,7 @@ double share(double x, double y) { return y > 0.0 ? std::clamp(x / y, 0.0, 1.0) 
 /// sine between the segments, and the distance by nothing that counts, while u.u v.v - (u.v)^2 loses all digits at
 /// 1e-8.
 struct Pair {
-  double s, t, squared;
+  double s, t;
 };
 Pair nearest_of_segments(const Vec3& p, const Vec3& u, const Vec3& a, const Vec3& v) {
   const Vec3 r = p - a;
@@ -49,13 +50,42 @@ Pair nearest_of_segments(const Vec3& p, const Vec3& u, const Vec3& a, const Vec3
   } else {
     s = share(-u.dot(r), uu);
   }
-  return {s, t, (r + s * u - t * v).squaredNorm()};
+  return {s, t};
+}
+
+/// The unit vector perpendicular to the edge u that leans against the axis v as the cone does, on the side of u x v or,
+/// where `flipped`, of v x u. Nothing where there is none: the two are parallel, or the edge lies steeper than the cone.
+std::optional<Vec3> cone_normal(const Vec3& u, const Vec3& v, double taper, bool flipped) {
+  const Vec3 n = flipped ? v.cross(u) : u.cross(v);
+  const double length = n.norm(), edge = u.norm();
+  if (!(length > k_parallel * edge * v.norm())) return std::nullopt;
+  const Vec3 inwards = n.cross(u) * (flipped ? -1.0 : 1.0) / (length * edge); // of v, what is perpendicular to u
+  const double lean = -taper * edge / length;
+  if (!(std::abs(lean) < 1.0)) return std::nullopt;
+  return Vec3(lean * inwards + std::sqrt(1.0 - lean * lean) / length * n);
+}
+
+/// The same beside a cone (edge_contact).
+Pair nearest_of_cone(const Vec3& p, const Vec3& u, const Capsule& capsule) {
+  const Vec3 v = capsule.b - capsule.a, r = p - capsule.a, across = u.cross(v);
+  const double uu = u.squaredNorm(), squared = across.squaredNorm();
+  if (!(uu > 0.0)) return {0.0, nearest_on_axis(p, capsule)};
+  const double upright = squared - capsule.taper * capsule.taper * uu; // > 0: less steep than the cone
+  double t = capsule.taper > 0.0 ? 1.0 : 0.0;
+  if (upright > 0.0) {
+    const double lines = u.cross(r).dot(across), leaning = std::abs(r.dot(across)) * capsule.taper * uu;
+    t = std::clamp((lines + leaning / std::sqrt(upright)) / squared, 0.0, 1.0);
+  }
+  const double free = u.dot(t * v - r) / uu, s = std::clamp(free, 0.0, 1.0);
+  return {s, s == free ? t : nearest_on_axis(p + s * u, capsule)};
 }
 
 Nearest edge_of(int index, int corners, const Vec3& p, const Vec3& q, const Capsule& capsule) {
-  const auto [s, t, squared] = nearest_of_segments(p, q - p, capsule.a, capsule.b - capsule.a);
+  const Vec3 u = q - p, v = capsule.b - capsule.a;
+  const auto [s, t] =
+      capsule.taper == 0.0 ? nearest_of_segments(p, u, capsule.a, v) : nearest_of_cone(p, u, capsule);
   const int next = (index + 1) % corners;
-  Nearest nearest{squared, t, {}, ClothFeature::edge, index};
+  Nearest nearest{(p + s * u - capsule.a - t * v).norm() - capsule.radius_at(t), t, {}, ClothFeature::edge, index};
   nearest.weights[index] = 1.0 - s;
   nearest.weights[next] = s;
   if (s == 0.0 || s == 1.0) {
@@ -75,13 +105,15 @@ std::optional<Vec3> on_side(const Vec3& n, double least, const Vec3& side) {
 /// The way out where an edge (or a triangle without area, by its longest side) and an axis meet.
 Vec3 normal_at_crossing(const Vec3& edge, const Capsule& capsule, const Vec3& side) {
   const Vec3 axis = capsule.b - capsule.a;
+  if (capsule.taper != 0.0)
+    if (const auto normal = cone_normal(edge, axis, capsule.taper, side.dot(edge.cross(axis)) < 0.0)) return *normal;
   if (const auto normal = on_side(edge.cross(axis), k_parallel * edge.norm() * axis.norm(), side)) return *normal;
   // Parallel, or one has no length: perpendicular to what direction there is, towards the side.
   const Vec3& along = axis.squaredNorm() >= edge.squaredNorm() ? axis : edge;
   const double squared = along.squaredNorm();
   const Vec3 sideways = squared > 0.0 ? Vec3(side - along.dot(side) / squared * along) : side;
   if (const auto normal = on_side(sideways, k_parallel * side.norm(), side)) return *normal;
-  return normal_on_axis({Vec3::Zero(), along, capsule.radius});
+  return normal_on_axis({Vec3::Zero(), along, capsule.radius, 0.0});
 }
 
 /// `fallback` gives the normal where cloth and axis meet.
@@ -93,14 +125,14 @@ FeatureContact contact_of(const Nearest& nearest, const Vec3& cloth, const Capsu
   contact.feature = nearest.feature;
   contact.index = nearest.index;
   const Vec3 away = cloth - (capsule.a + nearest.on_axis * (capsule.b - capsule.a));
-  const double length = away.norm();
+  const double length = away.norm(), radius = capsule.radius_at(nearest.on_axis);
   if (nearest.feature == ClothFeature::crossing || length <= k_on_axis) {
     contact.feature = ClothFeature::crossing;
     contact.index = 0;
-    contact.distance = -capsule.radius;
+    contact.distance = -radius;
     contact.normal = fallback();
   } else {
-    contact.distance = length - capsule.radius;
+    contact.distance = length - radius;
     contact.normal = 1.0 / length * away;
   }
   contact.closest = cloth - contact.distance * contact.normal;
@@ -126,21 +158,24 @@ Nearest nearest_of_triangle(const std::array<Vec3, 3>& p, const std::optional<Fa
   std::optional<Nearest> best;
   if (face) {
     const double above_a = face->n.dot(capsule.a - p[0]), above_b = face->n.dot(capsule.b - p[0]);
-    if (above_a * above_b < 0.0) {
+    const double height = std::sqrt(face->nn);
+    // Where the axis goes through flatter than the cone grows, the wide end is deeper than the crossing.
+    if (above_a * above_b < 0.0 && std::abs(capsule.taper) * height <= std::abs(above_a - above_b)) {
       const double t = above_a / (above_a - above_b);
       if (const auto weights = face->inside(capsule.a + t * (capsule.b - capsule.a)))
-        return {0.0, t, *weights, ClothFeature::crossing, 0};
+        return {-capsule.radius_at(t), t, *weights, ClothFeature::crossing, 0};
     }
     const auto over_a = face->inside(capsule.a), over_b = face->inside(capsule.b);
-    const double squared_a = above_a * above_a / face->nn, squared_b = above_b * above_b / face->nn;
-    if (over_a) best = Nearest{squared_a, 0.0, *over_a, ClothFeature::face, 0};
-    if (over_b && (!best || squared_b < squared_a)) best = Nearest{squared_b, 1.0, *over_b, ClothFeature::face, 0};
-    // The whole axis is above the face, and its distance grows evenly from one end to the other: no edge is nearer.
+    const double distance_a = std::abs(above_a) / height - capsule.radius_at(0.0),
+                 distance_b = std::abs(above_b) / height - capsule.radius_at(1.0);
+    if (over_a) best = Nearest{distance_a, 0.0, *over_a, ClothFeature::face, 0};
+    if (over_b && (!best || distance_b < distance_a)) best = Nearest{distance_b, 1.0, *over_b, ClothFeature::face, 0};
+    // The whole axis is above the face, and the distance grows evenly from one end to the other: no edge is nearer.
     if (over_a && over_b) return *best;
   }
   for (int k = 0; k < 3; ++k) {
     const Nearest edge = edge_of(k, 3, p[k], p[(k + 1) % 3], capsule);
-    if (!best || edge.squared < best->squared) best = edge;
+    if (!best || edge.distance < best->distance) best = edge;
   }
   return *best;
 }

@@ -15,6 +15,7 @@ using namespace fit;
 constexpr int k_guard_poses = 8;
 constexpr int k_first_steps = 10, k_last_steps = 15, k_swap_rounds = 12;
 constexpr int k_fewest_on_curve = 4;
+constexpr int k_denser = 4; // samples for the last refinement, times those of the search
 constexpr int k_cover_rounds = 50;
 constexpr double k_cover_margin = 2e-5; // m: rounding of radii and of single precision
 
@@ -85,7 +86,8 @@ bool cover(Search& search, const FitPoints& dense, const BodyMotion& motion, dou
     for (std::size_t u = 0; u < units.size(); ++u) {
       if (!(lack[u] > 0.0)) continue;
       covered = false;
-      units[u].radius += lack[u];
+      units[u].radius_a += lack[u];
+      units[u].radius_b += lack[u];
     }
     if (covered) return true;
   }
@@ -127,7 +129,7 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
   Cost cost;
   cost.under = options.under_weight;
   Search search(points, motion, guard, cost, [&] { return share.keep_going(); });
-  search.start(first_layout(points.skin, motion, character.skeleton));
+  search.start(first_layout(points.skin, motion, character.skeleton, options.tapered));
   search.refine(k_first_steps);
   const auto note = [&](const Search& at) { result.curve.push_back(curve_point(at, points.blocks)); };
 
@@ -149,9 +151,12 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
   search.polish(k_swap_rounds, k_last_steps, [&](double done) { share.set(0.6 + 0.4 * done); });
   note(search);
   std::vector<Unit> units = search.units();
+  // Where shapes are small against the samples' spacing they follow the samples: the last word has more of them.
+  const FitPoints dense = sample_skin(character, fitted, options.region, k_denser * options.samples, 2);
+  refine({dense.blocks, motion, guard, cost}, units, k_last_steps);
   if (options.max_error) result.met = meets(result.curve.back(), *options.max_error);
   if (options.cover) {
-    const FitPoints dense = sample_skin(character, fitted, options.region, 3 * options.samples, 2);
+    search.start(units);
     result.met = cover(search, dense, motion, *options.cover, units) && result.met;
   }
   std::stable_sort(result.curve.begin(), result.curve.end(),

@@ -31,6 +31,7 @@ struct FitOptions {
   std::optional<double> cover;     ///< m: no sample sticks out further than this
   double under_weight = 1.0;       ///< of skin that sticks out, squared, against proxies that do; > 0
   FitRegion region = FitRegion::garment;
+  bool tapered = false;  ///< capsules may have two radii
   bool symmetric = true; ///< where the body is; false: never
   int samples = 3000;    ///< of the skin, in each pose
   int poses = 32;        ///< the most different ones of those given are fitted; all are measured

@@ -151,11 +151,15 @@ double Guard::cost(const Unit& unit, const BodyMotion& motion, const Strength& s
     int least = 0;
     along.cwiseAbs().minCoeff(&least);
     const Vec3 across = along.cross(Vec3::Unit(least)).normalized(), third = along.cross(across);
-    const double side = 2.0 * std::numbers::pi * unit.radius * length,
-                 caps = 4.0 * std::numbers::pi * unit.radius * unit.radius;
+    // Of a cone: its mean girth, and normals that lean as its side does.
+    const double ra = unit.radius_a, rb = unit.radius_b, sine = std::clamp((rb - ra) / std::max(length, 1e-9), -1.0, 1.0),
+                 cosine = std::sqrt(1.0 - sine * sine);
+    const double side = std::numbers::pi * (ra + rb) * cosine * cosine * length,
+                 caps = 2.0 * std::numbers::pi * (ra * ra + rb * rb);
     for (const SurfacePoint& point : points) {
-      const Vec3 direction = point.direction.x() * along + point.direction.y() * across + point.direction.z() * third;
-      const Vec3 q = a + point.t * (b - a) + unit.radius * direction;
+      const double lean = point.cap ? 1.0 : cosine, forth = point.cap ? point.direction.x() : -sine;
+      const Vec3 direction = forth * along + lean * (point.direction.y() * across + point.direction.z() * third);
+      const Vec3 q = a + point.t * (b - a) + (ra + point.t * (rb - ra)) * direction;
       Vec3 slope;
       const double out = grids_[g].at(q, slope) - strength.dead;
       if (!(out > 0.0)) continue;
@@ -166,8 +170,8 @@ double Guard::cost(const Unit& unit, const BodyMotion& motion, const Strength& s
       if (!hessian) continue;
       Row row;
       row << (1.0 - point.t) * (fa.leftCols<3>().transpose() * slope), point.t * (fb.leftCols<3>().transpose() * slope),
-          slope.dot(direction);
-      constrain(row, unit.kind);
+          (1.0 - point.t) * slope.dot(direction), point.t * slope.dot(direction);
+      constrain(row, unit);
       *hessian += weight * row * row.transpose();
       *gradient += weight * out * row;
     }

@@ -30,10 +30,10 @@ public:
         const BodyMotion& motion);
 
   struct Strength {
-    double weight = 1.0; ///< of the whole mesh's area, against the skin's 1
+    double weight = 0.1; ///< of the whole mesh's area, against the skin's 1
     double dead = 0.020; ///< m, that is free
   };
-  /// Cost of one unit; where `hessian` is given, adds the Gauss-Newton terms of its parameters (a, b, radius).
+  /// Cost of one unit; where `hessian` is given, adds the Gauss-Newton terms of its parameters.
   double cost(const Unit& unit, const BodyMotion& motion, const Strength& strength, Hessian* hessian,
               Row* gradient) const;
 

@@ -1,14 +1,13 @@
 #include "proxies/fit_measure.h"
 
 #include "proxies/body_mesh.h"
-#include "proxies/fit_patches.h"
 #include "proxies/fit_winding.h"
 #include "proxies/signed_distance.h"
+#include "proxies/surface_cells.h"
 #include "rig/strong_poses.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <queue>
 
 namespace tutu::proxies {
@@ -20,7 +19,7 @@ constexpr double k_fine = 5e-4; // m: cells of this radius end the search for a 
 /// Cells looked at over all poses, at most, each way: the largest of those left is a bound too, if a wider one.
 constexpr int k_most_cells = 20000;
 constexpr double k_off_skin = 0.002, k_buried = 0.6; // as sample_skin has them
-constexpr double k_most_patches = 60e3;              // over all poses
+constexpr double k_measured_cells = 60e3;            // over all poses
 constexpr std::uint32_t k_seed = 20011;              // not that of a fit
 
 /// Values with weights, and what they come to.
@@ -68,16 +67,11 @@ struct Scene {
   const std::vector<bool>& in_region; ///< [triangle]
 };
 
-Capsule capsule_of(const PosedShapes& shapes, int pose, int s) {
-  const std::size_t i = static_cast<std::size_t>(pose) * shapes.count + s;
-  return {shapes.a[i], shapes.b[i], static_cast<double>(shapes.radius[i])};
-}
-
 /// Signed distance from the union of the shapes, one left out.
 double from_shapes(const Scene& scene, const Vec3& point, int without = -1) {
   double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s < scene.shapes.count; ++s)
-    if (s != without) least = std::min(least, signed_distance(point, capsule_of(scene.shapes, scene.pose, s)).distance);
+    if (s != without) least = std::min(least, signed_distance(point, scene.shapes.capsules[scene.shapes.at(scene.pose, s)]).distance);
   return least;
 }
 
@@ -126,51 +120,59 @@ double under_bound(const Scene& scene, double known) {
   return known;
 }
 
+double surface_of(const PosedShapes& shapes, int pose) {
+  double area = 0.0;
+  for (int s = 0; s < shapes.count; ++s) area += CapsuleSurface(shapes.capsules[shapes.at(pose, s)]).area();
+  return area;
+}
+
 // --- proxies that stick out of the skin -----------------------------------------------------------------------------
 
-struct PatchCell {
+/// A cell with the most that a point of it can be out of the body.
+struct OverCell {
   double bound;
-  int shape;
-  Patch patch;
-  bool operator<(const PatchCell& other) const { return bound < other.bound; }
+  SurfaceCell cell;
+  bool operator<(const OverCell& other) const { return bound < other.bound; }
 };
 
-/// How far a patch's middle is out of the body, and of the other proxies; nothing where all of the patch is inside
+/// How far a cell's middle is out of the body, and of the other proxies; nothing where all of the cell is inside
 /// another proxy, or where its nearest skin is not of the region.
 struct Out {
   double of_body, of_others;
 };
-std::optional<Out> look_out(const Scene& scene, const Patch& patch, int shape) {
-  const double others = from_shapes(scene, patch.middle, shape);
-  if (others < -patch.radius) return std::nullopt;
-  const auto near = scene.mesh.nearest(patch.middle, std::numeric_limits<double>::infinity());
+std::optional<Out> look_out(const Scene& scene, const CapsuleSurface& surface, const SurfaceCell& cell) {
+  const Vec3 middle = surface.middle(cell);
+  const double others = from_shapes(scene, middle, cell.capsule);
+  if (others < -surface.radius(cell)) return std::nullopt;
+  const auto near = scene.mesh.nearest(middle, std::numeric_limits<double>::infinity());
   if (!near || !scene.in_region[near->triangle]) return std::nullopt;
-  return Out{scene.winding.at(patch.middle) > 0.5 ? -near->distance : near->distance, others};
+  return Out{scene.winding.at(middle) > 0.5 ? -near->distance : near->distance, others};
 }
 
 void measure_over(const Scene& scene, double size, Weighted& over, double& bound) {
-  std::priority_queue<PatchCell> cells;
-  for (int s = 0; s < scene.shapes.count; ++s) {
-    const Capsule capsule = capsule_of(scene.shapes, scene.pose, s);
-    for (const Patch& patch : patches_of(capsule, size)) {
-      const auto out = look_out(scene, patch, s);
-      if (!out) continue;
-      cells.push({out->of_body + patch.radius, s, patch});
-      if (out->of_others < 0.0) continue;
-      over.add(out->of_body, patch.area);
-      bound = std::max(bound, out->of_body);
-    }
+  const auto capsules = std::span(scene.shapes.capsules).subspan(scene.shapes.at(scene.pose, 0), scene.shapes.count);
+  const std::vector<CapsuleSurface> surfaces(capsules.begin(), capsules.end());
+  std::priority_queue<OverCell> cells;
+  const auto whole = static_cast<int>(surface_of(scene.shapes, scene.pose) / (size * size));
+  for (const SurfaceCell& cell : surface_cells(capsules, whole)) {
+    const CapsuleSurface& surface = surfaces[cell.capsule];
+    const auto out = look_out(scene, surface, cell);
+    if (!out) continue;
+    cells.push({out->of_body + surface.radius(cell), cell});
+    if (out->of_others < 0.0) continue;
+    over.add(out->of_body, surface.area(cell));
+    bound = std::max(bound, out->of_body);
   }
   for (int looked = 0; !cells.empty() && cells.top().bound > bound; ++looked) {
-    const PatchCell cell = cells.top();
+    const OverCell top = cells.top();
     cells.pop();
-    if (cell.patch.radius <= k_fine || looked >= k_most_cells / scene.shapes.poses) {
-      bound = cell.bound;
+    const CapsuleSurface& surface = surfaces[top.cell.capsule];
+    if (surface.radius(top.cell) <= k_fine || looked >= k_most_cells / scene.shapes.poses) {
+      bound = top.bound;
       break;
     }
-    for (const Patch& part : quarters(capsule_of(scene.shapes, scene.pose, cell.shape), cell.patch))
-      if (const auto out = look_out(scene, part, cell.shape))
-        cells.push({out->of_body + part.radius, cell.shape, part});
+    for (const SurfaceCell& part : surface.halves(top.cell))
+      if (const auto out = look_out(scene, surface, part)) cells.push({out->of_body + surface.radius(part), part});
   }
 }
 
@@ -180,15 +182,6 @@ std::vector<bool> triangles_in(FitRegion region, const rig::Character& character
   for (const rig::Triangle& t : character.mesh.triangles)
     in.push_back(region == FitRegion::body || parts[main_joint_of(character, t)] == rig::BodyPart::garment);
   return in;
-}
-
-double surface_of(const PosedShapes& shapes) {
-  double area = 0.0;
-  for (int s = 0; s < shapes.count; ++s) {
-    const Capsule c = capsule_of(shapes, 0, s);
-    area += 2.0 * std::numbers::pi * c.radius * ((c.b - c.a).norm() + 2.0 * c.radius);
-  }
-  return area;
 }
 
 } // namespace
@@ -205,7 +198,7 @@ PosedShapes place(std::span<const Proxy> proxies, const std::vector<std::vector<
   std::size_t i = 0;
   for (const auto& pose : poses)
     for (const Proxy& proxy : proxies)
-      if (proxy.enabled) shapes.set(i++, proxy.a.place(pose), proxy.b.place(pose), proxy.radius);
+      if (proxy.enabled) shapes.set(i++, {proxy.a.place(pose), proxy.b.place(pose), proxy.radius, proxy.taper});
   return shapes;
 }
 
@@ -232,7 +225,7 @@ FitError measure_fit(const rig::Character& character, const std::vector<std::vec
 
   BodyMesh mesh(character.mesh.positions, character.mesh.triangles);
   const std::vector<bool> in_region = triangles_in(region, character);
-  const double size = std::max(0.008, std::sqrt(surface_of(shapes) * error.poses / k_most_patches));
+  const double size = std::max(0.008, std::sqrt(surface_of(shapes, 0) * error.poses / k_measured_cells));
   std::vector<Vec3> positions(character.mesh.positions.size()), normals(positions.size());
   double over_bound = 0.0;
   std::vector<rig::Triangle> together;

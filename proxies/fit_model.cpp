@@ -48,6 +48,8 @@ std::string base_name(const Proxy& proxy, const rig::Skeleton& skeleton) {
   return std::string(rig::bare_joint_name(skeleton.names[best]));
 }
 
+double in_hundredths_of_mm(double length) { return std::round(length * 1e5) / 1e5; }
+
 Anchor anchor_of(const Vec3& rest_point, const EndSkin& skin, std::span<const Transform> rest) {
   const Vec3 rounded = (rest_point * 1e5).array().round() / 1e5;
   Anchor anchor;
@@ -141,6 +143,7 @@ EndSkin end_skin(std::vector<double> weight_of_joint, const BodyMotion& motion, 
 void Unit::settle(const BodyMotion& motion) {
   if (kind == UnitKind::middle) a.x() = b.x() = 0.0;
   if (kind == UnitKind::across) {
+    radius_b = radius_a;
     b = mirrored(a);
     skin_b = fit::mirrored(skin_a, motion);
   }
@@ -163,24 +166,33 @@ void Unit::settle(const BodyMotion& motion) {
 
 void PosedShapes::resize() {
   const std::size_t size = static_cast<std::size_t>(count) * poses;
-  a.resize(size);
-  b.resize(size);
-  for (std::vector<float>* v : {&ax, &ay, &az, &dx, &dy, &dz, &inverse_square, &radius}) v->resize(size);
+  capsules.resize(size);
+  for (std::vector<float>& v : arrays_) v.resize(size + k_lanes);
 }
 
-void PosedShapes::set(std::size_t i, const Vec3& end_a, const Vec3& end_b, double its_radius) {
-  a[i] = end_a;
-  b[i] = end_b;
-  const Vec3 d = end_b - end_a;
-  const double squared = d.squaredNorm();
-  ax[i] = static_cast<float>(end_a.x());
-  ay[i] = static_cast<float>(end_a.y());
-  az[i] = static_cast<float>(end_a.z());
-  dx[i] = static_cast<float>(d.x());
-  dy[i] = static_cast<float>(d.y());
-  dz[i] = static_cast<float>(d.z());
-  inverse_square[i] = squared > 1e-12 ? static_cast<float>(1.0 / squared) : 0.0f;
-  radius[i] = static_cast<float>(its_radius);
+void PosedShapes::set(std::size_t i, const Capsule& capsule) {
+  capsules[i] = capsule;
+  // As CapsuleUnion: where one ball holds the other it is all there is.
+  double squared = (capsule.b - capsule.a).squaredNorm(), taper = capsule.taper, lean = 0.0;
+  Capsule shape = capsule;
+  if (!(squared > std::max(1e-12, taper * taper))) {
+    if (taper > 0.0) shape.a = capsule.b;
+    shape.b = shape.a;
+    shape.radius = capsule.widest();
+    squared = taper = 0.0;
+  } else if (taper != 0.0) {
+    lean = taper / std::sqrt(squared * (squared - taper * taper));
+  }
+  const Vec3 d = shape.b - shape.a;
+  const std::array<double, 10> values = {shape.a.x(), shape.a.y(), shape.a.z(), d.x(), d.y(), d.z(),
+                                         squared > 0.0 ? 1.0 / squared : 0.0, shape.radius, taper, lean};
+  for (std::size_t k = 0; k < values.size(); ++k) arrays_[k][i] = static_cast<float>(values[k]);
+}
+
+ShapeArrays PosedShapes::arrays() const {
+  const auto& v = arrays_;
+  return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(),
+          v[5].data(), v[6].data(), v[7].data(), v[8].data(), v[9].data()};
 }
 
 void PosedShapes::place(std::span<const Unit> units, const BodyMotion& motion) {
@@ -197,10 +209,11 @@ void PosedShapes::place(std::span<const Unit> units, const BodyMotion& motion) {
   for (int p = 0; p < poses; ++p)
     for (int s = 0; s < count; ++s) {
       const Unit& from = units[unit[s]];
-      const std::size_t i = static_cast<std::size_t>(p) * count + s, f = static_cast<std::size_t>(image[s]) * poses + p;
+      const std::size_t f = static_cast<std::size_t>(image[s]) * poses + p;
       const Vec3 ra = image[s] ? mirrored(from.a) : from.a, rb = image[s] ? mirrored(from.b) : from.b;
-      set(i, from.frames_a[f].leftCols<3>() * ra + from.frames_a[f].col(3),
-          from.frames_b[f].leftCols<3>() * rb + from.frames_b[f].col(3), from.radius);
+      set(at(p, s), {from.frames_a[f].leftCols<3>() * ra + from.frames_a[f].col(3),
+                     from.frames_b[f].leftCols<3>() * rb + from.frames_b[f].col(3), from.radius_a,
+                     from.radius_b - from.radius_a});
     }
 }
 
@@ -210,13 +223,20 @@ std::vector<Proxy> proxies_of(std::span<const Unit> units, const BodyMotion& mot
   std::map<std::string, int> used;
   for (const Unit& unit : units)
     for (int image = 0; image < unit.shapes(); ++image) {
+      const Vec3 axis = unit.b - unit.a;
+      const double radius_a = in_hundredths_of_mm(unit.radius_a), radius_b = in_hundredths_of_mm(unit.radius_b);
       Proxy proxy;
-      proxy.kind = (unit.a - unit.b).norm() > 2e-5 ? ProxyKind::capsule : ProxyKind::sphere;
-      proxy.a = anchor_of(image ? mirrored(unit.a) : unit.a, image ? mirrored(unit.skin_a, motion) : unit.skin_a, rest);
-      proxy.b = proxy.kind == ProxyKind::sphere ? proxy.a
-                                                : anchor_of(image ? mirrored(unit.b) : unit.b,
-                                                            image ? mirrored(unit.skin_b, motion) : unit.skin_b, rest);
-      proxy.radius = std::round(unit.radius * 1e5) / 1e5;
+      // At rest one ball holds the other, or both are at one point.
+      const bool is_sphere = axis.norm() <= std::max(2e-5, std::abs(radius_b - radius_a));
+      const bool at_b = is_sphere && radius_b > radius_a;
+      const auto anchor = [&](const Vec3& end, const EndSkin& skin) {
+        return anchor_of(image ? mirrored(end) : end, image ? mirrored(skin, motion) : skin, rest);
+      };
+      proxy.kind = is_sphere ? ProxyKind::sphere : ProxyKind::capsule;
+      proxy.a = at_b ? anchor(unit.b, unit.skin_b) : anchor(unit.a, unit.skin_a);
+      proxy.b = is_sphere ? proxy.a : anchor(unit.b, unit.skin_b);
+      proxy.radius = at_b ? radius_b : radius_a;
+      proxy.taper = is_sphere ? 0.0 : radius_b - radius_a;
       const std::string name = base_name(proxy, skeleton);
       proxy.name = name + " " + std::to_string(++used[name]);
       proxies.push_back(proxy);

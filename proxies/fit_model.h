@@ -2,7 +2,9 @@
 #pragma once
 
 #include "proxies/fit_points.h"
+#include "proxies/shapes.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -46,12 +48,13 @@ enum class UnitKind {
   across  ///< a capsule from the left to its mirror image
 };
 
-/// One set of parameters: ends in model space at rest, and the radius. Of a middle, x = 0; of an across, b and skin_b
-/// are the mirror images of a and skin_a.
+/// One set of parameters: ends in model space at rest, and the radii there. Of a middle, x = 0; of an across, b, its
+/// radius and skin_b are the mirror images of a, its radius and skin_a.
 struct Unit {
   UnitKind kind = UnitKind::one;
+  bool tapered = false; ///< may have two radii
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
-  double radius = 0.0;
+  double radius_a = 0.0, radius_b = 0.0;
   EndSkin skin_a, skin_b;
   std::vector<Affine> frames_a, frames_b; ///< [(0 or 1 for the mirror image) * poses + pose]
 
@@ -60,28 +63,36 @@ struct Unit {
   void settle(const BodyMotion& motion);
 };
 
-/// Parameters of a unit in one row: a, b, radius. Takes a derivative with respect to both ends and the radius of
-/// the unit's own shape to one with respect to what the kind leaves free.
-using Row = Eigen::Matrix<double, 7, 1>;
-using Hessian = Eigen::Matrix<double, 7, 7>;
-inline void constrain(Row& row, UnitKind kind) {
-  if (kind == UnitKind::middle) row[0] = row[3] = 0.0;
-  if (kind != UnitKind::across) return;
-  row.head<3>() += mirrored(Vec3(row.segment<3>(3)));
-  row.segment<3>(3).setZero();
+/// Parameters of a unit in one row: a, b, both radii. Takes a derivative with respect to those of the unit's own shape
+/// to one with respect to what the kind leaves free.
+using Row = Eigen::Matrix<double, 8, 1>;
+using Hessian = Eigen::Matrix<double, 8, 8>;
+inline void constrain(Row& row, const Unit& unit) {
+  if (unit.kind == UnitKind::middle) row[0] = row[3] = 0.0;
+  if (unit.kind == UnitKind::across) {
+    row.head<3>() += mirrored(Vec3(row.segment<3>(3)));
+    row.segment<3>(3).setZero();
+  }
+  if (unit.tapered && unit.kind != UnitKind::across) return;
+  row[6] += row[7];
+  row[7] = 0.0;
 }
 
 /// All shapes of some units in all poses.
 struct PosedShapes {
   int count = 0, poses = 0;
-  std::vector<int> unit;                                             ///< [shape]
-  std::vector<char> image;                                           ///< [shape]: 1 for the mirror image of a pair
-  std::vector<Vec3> a, b;                                            ///< [pose * count + shape]
-  std::vector<float> ax, ay, az, dx, dy, dz, inverse_square, radius; ///< the same, for the search; d = b - a
+  std::vector<int> unit;         ///< [shape]
+  std::vector<char> image;       ///< [shape]: 1 for the mirror image of a pair
+  std::vector<Capsule> capsules; ///< [pose * count + shape]
 
   void place(std::span<const Unit> units, const BodyMotion& motion);
   void resize(); ///< everything but unit and image, to poses * count
-  void set(std::size_t i, const Vec3& end_a, const Vec3& end_b, double its_radius);
+  void set(std::size_t i, const Capsule& capsule);
+  std::size_t at(int pose, int shape) const { return static_cast<std::size_t>(pose) * count + shape; }
+  ShapeArrays arrays() const; ///< the same, for the search; good until the shapes change
+
+private:
+  std::array<std::vector<float>, 10> arrays_; // in the order of ShapeArrays
 };
 
 /// What is nearest to each lane of some blocks: signed distance and shape; and the nearest shape of another unit.

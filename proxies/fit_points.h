@@ -2,14 +2,13 @@
 #pragma once
 
 #include "proxies/fit.h"
+#include "proxies/fit_kernel.h"
 
 #include <array>
 #include <cstdint>
 #include <vector>
 
 namespace tutu::proxies::fit {
-
-inline constexpr int k_lanes = 16; ///< points a block
 
 /// Joints and weights of one point of the skin, falling; unused ones have weight 0.
 struct SkinPoint {

@@ -1,5 +1,7 @@
 #include "proxies/fit_refine.h"
 
+#include "proxies/signed_distance.h"
+
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
@@ -24,9 +26,10 @@ void step(Unit& unit, const Hessian& hessian, const Row& gradient, double dampin
   if (longest > k_longest_step) move *= k_longest_step / longest;
   unit.a += move.head<3>();
   unit.b += move.segment<3>(3);
-  unit.radius = std::max(k_least_radius, unit.radius + move[6]);
+  unit.radius_a = std::max(k_least_radius, unit.radius_a + move[6]);
+  unit.radius_b = unit.tapered ? std::max(k_least_radius, unit.radius_b + move[7]) : unit.radius_a;
   if (unit.kind == UnitKind::middle) unit.a.x() = unit.b.x() = 0.0;
-  if (unit.kind == UnitKind::across) unit.b = mirrored(unit.a);
+  if (unit.kind == UnitKind::across) unit.b = mirrored(unit.a), unit.radius_b = unit.radius_a;
 }
 
 } // namespace
@@ -53,24 +56,23 @@ void accumulate(const Problem& problem, std::span<const Unit> units, const Posed
     if (!(given > 0.0)) continue;
     const int s = nearest.shape[i], pose = blocks.pose[i / k_lanes], u = shapes.unit[s];
     const Unit& unit = units[u];
-    const std::size_t posed = static_cast<std::size_t>(pose) * shapes.count + s;
     const std::size_t frame = static_cast<std::size_t>(shapes.image[s]) * problem.motion.poses + pose;
     const Vec3 point(static_cast<double>(blocks.x[i]), static_cast<double>(blocks.y[i]),
                      static_cast<double>(blocks.z[i]));
-    const Vec3 axis = shapes.b[posed] - shapes.a[posed], from_a = point - shapes.a[posed];
-    const double squared = axis.squaredNorm();
-    const double t = squared > 1e-12 ? std::clamp(from_a.dot(axis) / squared, 0.0, 1.0) : 0.0;
-    const Vec3 away = from_a - t * axis;
+    const Capsule& capsule = shapes.capsules[shapes.at(pose, s)];
+    const double t = nearest_on_axis(point, capsule);
+    const Vec3 away = point - capsule.a - t * (capsule.b - capsule.a);
     const double length = away.norm();
     if (!(length > 1e-9)) continue;
     const Vec3 n = away / length;
-    const double e = length - unit.radius, weight = given * (e > 0.0 ? problem.cost.under : problem.cost.over);
+    const double e = length - capsule.radius_at(t), weight = given * (e > 0.0 ? problem.cost.under : problem.cost.over);
     Row row;
     row.head<3>() = -(1.0 - t) * (unit.frames_a[frame].leftCols<3>().transpose() * n);
     row.segment<3>(3) = -t * (unit.frames_b[frame].leftCols<3>().transpose() * n);
-    row[6] = -1.0;
+    row[6] = t - 1.0;
+    row[7] = -t;
     if (shapes.image[s]) row[0] = -row[0], row[3] = -row[3];
-    constrain(row, unit.kind);
+    constrain(row, unit);
     hessians[u].noalias() += (weight * row) * row.transpose();
     gradients[u] += (weight * e) * row;
   }

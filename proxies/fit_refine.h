@@ -29,8 +29,9 @@ double cost_of(const Problem& problem, std::span<const Unit> units, PosedShapes&
 
 /// Improves the units by up to `iterations` steps; the cost never rises. Stops early where steps gain less than 1e-4 of
 /// it. Each point pulls at the shape it is nearest to: the Hessian is one block a unit, with
-///   de/da = -(1-t) A^T n, de/db = -t B^T n, de/dr = -1,
-/// n the unit vector from the axis to the point, t the parameter there, A and B the frames of the ends.
+///   de/da = -(1-t) A^T n, de/db = -t B^T n, de/dr_a = -(1-t), de/dr_b = -t,
+/// n the unit vector from the nearest ball's centre to the point, t its place on the axis, A and B the frames of the
+/// ends. t is where e is least, so that its own change does not count.
 double refine(const Problem& problem, std::vector<Unit>& units, int iterations);
 
 /// The Gauss-Newton terms of every unit at the present nearest shapes. Exposed for the tests of derivatives.

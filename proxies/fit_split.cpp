@@ -102,7 +102,9 @@ public:
   }
 
 private:
-  Unit through(const Points& points, UnitKind kind) const { return capsule_through(points, kind, problem_.motion); }
+  Unit through(const Points& points, UnitKind kind) const {
+    return capsule_through(points, kind, unit_.tapered, problem_.motion);
+  }
 
   void try_units(std::vector<Unit> units) {
     int shapes = 0;

@@ -51,7 +51,7 @@ UnitPoint unit_point(const SkinPoint& point, bool fold, const BodyMotion& motion
   return result;
 }
 
-Unit capsule_through(std::span<const UnitPoint> points, UnitKind kind, const BodyMotion& motion) {
+Unit capsule_through(std::span<const UnitPoint> points, UnitKind kind, bool tapered, const BodyMotion& motion) {
   const bool fold = kind == UnitKind::middle || kind == UnitKind::across;
   // Of a tube's skin the variance across is r^2 / 2 each way.
   const Spread outer = spread(points, 0.0, fold);
@@ -77,9 +77,10 @@ Unit capsule_through(std::span<const UnitPoint> points, UnitKind kind, const Bod
   }
   Unit unit;
   unit.kind = kind;
+  unit.tapered = tapered;
   unit.a = inner.mean + half * axis;
   unit.b = inner.mean - half * axis;
-  unit.radius = radius;
+  unit.radius_a = unit.radius_b = radius;
   take_skins(unit, points, motion);
   unit.settle(motion);
   return unit;
@@ -112,7 +113,7 @@ void take_skins(Unit& unit, std::span<const UnitPoint> points, const BodyMotion&
 }
 
 std::vector<Unit> first_layout(const std::vector<SkinPoint>& skin, const BodyMotion& motion,
-                               const rig::Skeleton& skeleton) {
+                               const rig::Skeleton& skeleton, bool tapered) {
   // Owners: small joints hand their points to the joint above, from the leaves up; what has no joint above keeps them.
   std::vector<int> owned(motion.joints, 0), owner(motion.joints);
   for (const SkinPoint& p : skin) ++owned[p.main_joint];
@@ -149,7 +150,7 @@ std::vector<Unit> first_layout(const std::vector<SkinPoint>& skin, const BodyMot
         for (int& j : p.joints)
           if (motion.mirror[j] >= 0) j = motion.mirror[j];
       }
-    units.push_back(capsule_through(points, kind, motion));
+    units.push_back(capsule_through(points, kind, tapered, motion));
   }
   return units;
 }

@@ -1,5 +1,6 @@
 #include "proxies/mesh_tree.h"
 
+#include "proxies/feature_contact.h"
 #include "proxies/point_triangle.h"
 #include "proxies/solid_angle.h"
 
@@ -170,7 +171,7 @@ double MeshTree::winding_number(const Vec3& point, double beta) const {
 bool MeshTree::box_holds(const Vec3& point) const { return boxes_->model.getBV(0).bv.contain(point); }
 
 void MeshTree::touching(const Capsule& capsule, std::vector<int>& triangles) const {
-  const fcl::Capsuled shape(capsule.radius, (capsule.b - capsule.a).norm());
+  const fcl::Capsuled shape(capsule.widest(), (capsule.b - capsule.a).norm());
   // Yes or no for each triangle: depths and normals of this pair are those of whichever edge came last.
   const fcl::CollisionRequestd request(triangles_.size(), false);
   fcl::CollisionResultd result;
@@ -185,6 +186,13 @@ void MeshTree::touching(const Capsule& capsule, std::vector<int>& triangles) con
   const auto first = static_cast<std::ptrdiff_t>(triangles.size());
   for (std::size_t i = 0; i < result.numContacts(); ++i) triangles.push_back(static_cast<int>(result.getContact(i).b1));
   std::sort(triangles.begin() + first, triangles.end());
+  if (capsule.taper == 0.0) return;
+  // FCL was asked for the capsule around the cone, having none.
+  const auto misses = [&](int triangle) {
+    const auto& [p, q, r] = triangles_[triangle];
+    return triangle_contact(positions_[p], positions_[q], positions_[r], capsule, Vec3::Zero()).distance > 0.0;
+  };
+  triangles.erase(std::remove_if(triangles.begin() + first, triangles.end(), misses), triangles.end());
 }
 
 } // namespace tutu::proxies

@@ -54,6 +54,8 @@ void NarrowPhase::place(std::span<const Capsule> colliders) {
 }
 
 Contact NarrowPhase::contact(const Vec3& point, int collider) const {
+  // FCL has no capsule with two radii; as the hull of a mesh or of balls it would be an iteration, right to 1e-6.
+  if (placed_->capsules[collider].taper != 0.0) return signed_distance(point, placed_->capsules[collider]);
   // Asked in a frame with the point as origin: nothing is lost far from the world's origin, and the witness is the
   // direction.
   fcl::Transform3d point_from_capsule = placed_->poses[collider];

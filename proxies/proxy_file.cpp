@@ -112,7 +112,15 @@ private:
     proxy.b = end(shape, b);
     check_joint_is_used(shape, {a, b});
     if (same(proxy.a, proxy.b)) throw shape.error("\"a\" and \"b\" at one point", "two points, or a \"sphere\"");
-    proxy.radius = shape.at("radius").positive();
+    const JsonValue radius = shape.at("radius");
+    if (!radius.is_array()) {
+      proxy.radius = radius.positive();
+      return;
+    }
+    const std::vector<double> ends = radius.numbers(2);
+    if (!(ends[0] > 0.0 && ends[1] > 0.0)) throw radius.error("a radius above 0, or two: [at a, at b]");
+    proxy.radius = ends[0];
+    proxy.taper = ends[1] - ends[0];
   }
 
   void check_joint_is_used(const JsonValue& shape, std::initializer_list<JsonValue> ends) const {
@@ -264,12 +272,24 @@ void require_writable(const Proxy& proxy, const Anchor& anchor, const rig::Skele
 }
 
 void require_writable(const Proxy& proxy, const rig::Skeleton& skeleton) {
-  if (!(std::isfinite(proxy.radius) && proxy.radius > 0.0)) refuse(proxy, "has no radius above 0");
+  const double at_b = proxy.radius + proxy.taper;
+  if (!(std::isfinite(proxy.radius) && proxy.radius > 0.0 && std::isfinite(at_b) && at_b > 0.0))
+    refuse(proxy, "has no radius above 0");
+  if (proxy.kind == ProxyKind::sphere && proxy.taper != 0.0) refuse(proxy, "is a sphere with a taper");
   if (!(std::isfinite(proxy.friction) && proxy.friction >= 0.0)) refuse(proxy, "has a friction below 0");
   require_writable(proxy, proxy.a, skeleton);
   if (proxy.kind == ProxyKind::sphere) return;
   require_writable(proxy, proxy.b, skeleton);
   if (same(proxy.a, proxy.b)) refuse(proxy, "is a capsule with both ends at one point");
+}
+
+/// The shortest decimal whose difference from the first radius is the taper to the bit, where one is near: taper is a
+/// difference of two such decimals, and the sum of both would show its rounding.
+double second_radius(const Proxy& proxy) {
+  const double sum = proxy.radius + proxy.taper;
+  for (double scale = 1e3; scale <= 1e9; scale *= 10.0)
+    if (const double decimal = std::round(sum * scale) / scale; decimal - proxy.radius == proxy.taper) return decimal;
+  return sum;
 }
 
 Json shape_of(const Proxy& proxy, const rig::Skeleton& skeleton, std::span<const Transform> rest) {
@@ -285,7 +305,8 @@ Json shape_of(const Proxy& proxy, const rig::Skeleton& skeleton, std::span<const
     shape["a"] = end(proxy.a);
     shape["b"] = end(proxy.b);
   }
-  shape["radius"] = proxy.radius;
+  if (proxy.taper == 0.0) shape["radius"] = proxy.radius;
+  else shape["radius"] = {proxy.radius, second_radius(proxy)};
   return shape;
 }
 

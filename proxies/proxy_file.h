@@ -2,16 +2,17 @@
 //
 //   { "proxies": [
 //     { "name": "head", "sphere": { "joint": "Head", "center": [0, 0.09, 0.01], "radius": 0.095 } },
-//     { "capsule": { "joint": "LeftUpLeg", "a": [0,0,0], "b": [0,-0.4,0], "radius": 0.07 }, "friction": 0.3, "enabled":
-//     true }, { "capsule": { "a": { "between": ["LeftUpLeg", "LeftLeg"], "at": 0.5 },
-//                    "b": { "point": [0.1, 0.9, 0], "joints": [["Hips", 0.7], ["LeftUpLeg", 0.3]] }, "radius": 0.07 } }
-//                    ] }
+//     { "capsule": { "joint": "LeftLeg", "a": [0, 0, 0], "b": [0, -0.4, 0], "radius": [0.07, 0.04] }, "friction": 0.3,
+//       "enabled": true },
+//     { "capsule": { "a": { "between": ["LeftUpLeg", "LeftLeg"], "at": 0.5 }, "radius": 0.07,
+//                    "b": { "point": [0.1, 0.9, 0], "joints": [["Hips", 0.7], ["LeftUpLeg", 0.3]] } } }
+//   ] }
 //
 // Points are in the frame of `joint` (m); "between" blends two joint origins; "point" is in model space at rest and
 // follows its joints by weight (normalised; at most 4). An end may name its own joint: { "joint": "LeftLeg", "at": [0,
 // 0, 0] }. A sphere's center takes every form that an end takes. The shape's own "joint" is for bare points [x, y, z]:
 // required where there is one, refused where there is none. A capsule with both ends at one point is refused: it is a
-// sphere.
+// sphere. A capsule has one radius, or two: [at a, at b].
 #pragma once
 
 #include "proxies/collider.h"

@@ -34,10 +34,12 @@ bool in_range(const Vec3& v) { return in_range(v.x()) && in_range(v.y()) && in_r
 } // namespace
 
 void require_usable(const Capsule& capsule, int index) {
-  if (in_range(capsule.a) && in_range(capsule.b) && in_range(capsule.radius) && capsule.radius > 0.0) return;
+  if (in_range(capsule.a) && in_range(capsule.b) && in_range(capsule.radius) && in_range(capsule.taper) &&
+      capsule.narrowest() > 0.0)
+    return;
   refuse("collider " + std::to_string(index) + " Capsule{" + exactly(capsule.a) + ", " + exactly(capsule.b) + ", " +
-             exactly(capsule.radius) + '}',
-         "end points within +-1e12 m and a radius above 0");
+             exactly(capsule.radius) + ", " + exactly(capsule.taper) + '}',
+         "end points within +-1e12 m and radii above 0");
 }
 
 void require_usable(const std::optional<Plane>& ground) {

@@ -3,12 +3,22 @@
 
 #include "rig/math.h"
 
+#include <algorithm>
+
 namespace tutu::proxies {
 
-/// All points within `radius` of the segment a..b. With a == b it is a sphere, so one type serves both in the hot path.
+/// The balls about all points of the segment a..b, their radius growing evenly by `taper` from `radius` at a; where
+/// |taper| < |b - a| that is both end balls and the cone that touches them, elsewhere the larger ball alone. With
+/// taper == 0 all points within `radius` of the segment, with a == b a sphere (then taper == 0), so one type serves all
+/// in the hot path.
 struct Capsule {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
-  double radius = 0.0; ///< > 0
+  double radius = 0.0; ///< at a, > 0
+  double taper = 0.0;  ///< m, added by b: radius + taper > 0
+
+  double radius_at(double t) const { return radius + t * taper; } ///< t in [0, 1] of the axis
+  double widest() const { return std::max(radius, radius + taper); }
+  double narrowest() const { return std::min(radius, radius + taper); }
 };
 
 /// A box along the axes of the world, m.

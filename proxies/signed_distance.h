@@ -13,14 +13,26 @@ inline constexpr double k_on_axis = 1e-12;
 /// noise.
 inline constexpr double k_vertical = 1e-12;
 
-/// Distance to the segment minus the radius [Ericson 2005, Real-Time Collision Detection, 5.1.2].
+/// Sine of a capsule's cone: a normal of its side leans by that from perpendicular to the axis, towards the thinner end,
+///   n . (b - a) = -taper,
+/// since there |p - c(t)| - r(t) is least along the axis, and rises the same way on both sides of c(t).
+/// 0 without taper; +-1 where the larger end ball is all there is.
+double cone_sine(const Capsule& capsule);
+
+/// The centre, as share of the axis, of the ball whose surface is nearest to the point (that it is deepest in).
+/// With h along the axis from a and rho across it [derived from n . (b - a) = -taper]:
+///   t = clamp((h + rho s / sqrt(1 - s^2)) / |b - a|), s = cone_sine;
+/// without taper that is the foot on the axis [Ericson 2005, Real-Time Collision Detection, 5.1.2].
+double nearest_on_axis(const Vec3& point, const Capsule& capsule);
+
+/// Distance to the nearest ball's centre minus its radius: exact, inside and out, for the union of all balls is convex.
 /// A point on the axis has no unique normal: it gets normal_on_axis.
 Contact signed_distance(const Vec3& point, const Capsule& capsule);
 
 Contact signed_distance(const Vec3& point, const Plane& plane);
 
-/// The normal of points on the axis: the unit vector perpendicular to the axis that is nearest to +Y
-/// (+Y itself for a sphere, +X for a vertical axis), so a lone particle is pushed up, out of the limb.
+/// The normal of points on the axis: of those the side has, the one nearest to +Y (+Y itself for a sphere, the one
+/// towards +X for a vertical axis), so a lone particle is pushed up, out of the limb.
 Vec3 normal_on_axis(const Capsule& capsule);
 
 } // namespace tutu::proxies

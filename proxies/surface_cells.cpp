@@ -1,5 +1,7 @@
 #include "proxies/surface_cells.h"
 
+#include "proxies/signed_distance.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -22,36 +24,66 @@ void add_ring(std::vector<SurfaceCell>& cells, SurfaceCell ring, double circumfe
 } // namespace
 
 CapsuleSurface::CapsuleSurface(const Capsule& capsule)
-    : a_(capsule.a), axis_(capsule.b - capsule.a), length_(axis_.norm()), radius_(capsule.radius) {
+    : a_(capsule.a), axis_(capsule.b - capsule.a), length_(axis_.norm()), sine_(cone_sine(capsule)),
+      radius_a_(capsule.radius), radius_b_(capsule.radius + capsule.taper) {
   axis_ = length_ > 0.0 ? Vec3(axis_ / length_) : Vec3::UnitY();
   int least = 0;
   axis_.cwiseAbs().minCoeff(&least);
   x_ = axis_.cross(Vec3::Unit(least)).normalized();
   y_ = axis_.cross(x_);
+  if (std::abs(sine_) < 1.0) {
+    cosine_ = std::sqrt(1.0 - sine_ * sine_);
+    return;
+  }
+  if (sine_ > 0.0) a_ = capsule.b;
+  radius_a_ = radius_b_ = capsule.widest();
+  length_ = sine_ = 0.0;
+  cosine_ = 1.0;
+}
+
+double CapsuleSurface::area() const {
+  return 2.0 * k_pi * (radius_a_ * radius_a_ * (1.0 - std::sin(rim(CapsulePart::cap_a))) +
+                  radius_b_ * radius_b_ * (1.0 - std::sin(rim(CapsulePart::cap_b))) +
+                  0.5 * slant() * cosine_ * (radius_a_ + radius_b_));
+}
+
+double CapsuleSurface::rim(CapsulePart cap) const { return std::asin(cap == CapsulePart::cap_a ? sine_ : -sine_); }
+
+double CapsuleSurface::radius_of(CapsulePart cap) const { return cap == CapsulePart::cap_a ? radius_a_ : radius_b_; }
+
+double CapsuleSurface::from_axis(CapsulePart part, double u) const {
+  if (part == CapsulePart::side) return cosine_ * (radius_a_ + u * (radius_b_ - radius_a_));
+  return radius_of(part) * std::cos(u);
 }
 
 Vec3 CapsuleSurface::middle(const SurfaceCell& cell) const {
   const double u = 0.5 * (cell.u0 + cell.u1), v = 0.5 * (cell.v0 + cell.v1);
   const Vec3 out = std::cos(v) * x_ + std::sin(v) * y_;
-  if (cell.part == CapsulePart::side) return a_ + u * length_ * axis_ + radius_ * out;
+  if (cell.part == CapsulePart::side) {
+    const Vec3 normal = cosine_ * out - sine_ * axis_;
+    return a_ + u * length_ * axis_ + (radius_a_ + u * (radius_b_ - radius_a_)) * normal;
+  }
   const bool at_b = cell.part == CapsulePart::cap_b;
   const Vec3 centre = at_b ? Vec3(a_ + length_ * axis_) : a_;
-  return centre + radius_ * (std::cos(u) * out + (at_b ? 1.0 : -1.0) * std::sin(u) * axis_);
+  return centre + radius_of(cell.part) * (std::cos(u) * out + (at_b ? 1.0 : -1.0) * std::sin(u) * axis_);
 }
 
 double CapsuleSurface::area(const SurfaceCell& cell) const {
   const double angle = cell.v1 - cell.v0;
-  if (cell.part == CapsulePart::side) return (cell.u1 - cell.u0) * length_ * angle * radius_;
-  return radius_ * radius_ * angle * (std::sin(cell.u1) - std::sin(cell.u0));
+  if (cell.part == CapsulePart::side) // from_axis grows evenly
+    return (cell.u1 - cell.u0) * slant() * angle * from_axis(cell.part, 0.5 * (cell.u0 + cell.u1));
+  const double r = radius_of(cell.part);
+  return r * r * angle * (std::sin(cell.u1) - std::sin(cell.u0));
 }
 
 double CapsuleSurface::along(const SurfaceCell& cell) const {
-  return 0.5 * (cell.u1 - cell.u0) * (cell.part == CapsulePart::side ? length_ : radius_);
+  return 0.5 * (cell.u1 - cell.u0) * (cell.part == CapsulePart::side ? slant() : radius_of(cell.part));
 }
 
 double CapsuleSurface::around(const SurfaceCell& cell) const {
-  const double widest = cell.part == CapsulePart::side ? 1.0 : std::cos(cell.u0);
-  return 0.5 * (cell.v1 - cell.v0) * radius_ * widest;
+  double widest = std::max(from_axis(cell.part, cell.u0), from_axis(cell.part, cell.u1));
+  if (cell.part != CapsulePart::side && cell.u0 * cell.u1 < 0.0) widest = radius_of(cell.part); // the equator
+  return 0.5 * (cell.v1 - cell.v0) * widest;
 }
 
 double CapsuleSurface::radius(const SurfaceCell& cell) const { return std::hypot(along(cell), around(cell)); }
@@ -64,29 +96,31 @@ std::array<SurfaceCell, 2> CapsuleSurface::halves(const SurfaceCell& cell) const
 }
 
 std::vector<SurfaceCell> surface_cells(std::span<const Capsule> capsules, int count) {
+  const std::vector<CapsuleSurface> surfaces(capsules.begin(), capsules.end());
   double whole = 0.0;
-  for (const Capsule& c : capsules) whole += 2.0 * k_pi * c.radius * (2.0 * c.radius + (c.b - c.a).norm());
+  for (const CapsuleSurface& surface : surfaces) whole += surface.area();
   std::vector<SurfaceCell> cells;
   if (!(whole > 0.0)) return cells;
   const double spacing = std::sqrt(whole / std::max(1, count));
-  for (std::size_t i = 0; i < capsules.size(); ++i) {
-    const double r = capsules[i].radius, length = (capsules[i].b - capsules[i].a).norm();
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    const CapsuleSurface& surface = surfaces[i];
     SurfaceCell ring;
     ring.capsule = static_cast<int>(i);
-    const int rings = length > 0.0 ? parts_of(length, spacing) : 0;
-    for (int k = 0; k < rings; ++k) {
-      ring.u0 = static_cast<double>(k) / rings;
-      ring.u1 = static_cast<double>(k + 1) / rings;
-      add_ring(cells, ring, 2.0 * k_pi * r, spacing);
-    }
-    const int bands = parts_of(0.5 * k_pi * r, spacing);
-    for (const CapsulePart part : {CapsulePart::cap_a, CapsulePart::cap_b})
-      for (int k = 0; k < bands; ++k) {
-        ring.part = part;
-        ring.u0 = 0.5 * k_pi * k / bands;
-        ring.u1 = 0.5 * k_pi * (k + 1) / bands;
-        add_ring(cells, ring, 2.0 * k_pi * r * std::cos(0.5 * (ring.u0 + ring.u1)), spacing);
+    const auto add_rings = [&](CapsulePart part, double from, double to, double extent) {
+      const int rings = parts_of(extent, spacing);
+      ring.part = part;
+      for (int k = 0; k < rings; ++k) {
+        ring.u0 = from + (to - from) * k / rings;
+        ring.u1 = from + (to - from) * (k + 1) / rings;
+        const double middle = 0.5 * (ring.u0 + ring.u1);
+        add_ring(cells, ring, 2.0 * k_pi * surface.from_axis(part, middle), spacing);
       }
+    };
+    if (surface.slant() > 0.0) add_rings(CapsulePart::side, 0.0, 1.0, surface.slant());
+    for (const CapsulePart cap : {CapsulePart::cap_a, CapsulePart::cap_b}) {
+      const double rim = surface.rim(cap);
+      add_rings(cap, rim, 0.5 * k_pi, (0.5 * k_pi - rim) * surface.radius_of(cap));
+    }
   }
   return cells;
 }

@@ -34,9 +34,10 @@ template <std::size_t Corners> Cloth<Corners> cloth_at(const Cloth<Corners>& fro
 /// axis. There the axis only grows or shrinks along its direction e, and a corner of the cloth goes on a curve y(t)
 /// with
 ///   y' = v - turn x rho,   |y''| <= 2 |turn| |v| + |turn|^2 |rho|,   rho, v: place and velocity from the middle.
-/// Both are convex, so with the contact's normal n fixed in that frame they are apart by at least the least n.y of the
-/// corners less the axis' reach l |n.e|, at every time: n.y falls by y' and y'' at most, and l grows by `stretch`.
-/// Without turn that is exact for the nearest corner, and the way in is Newton's on a convex function.
+/// Both are convex, the capsule as the hull of its end balls, so with the contact's normal n fixed in that frame they are
+/// apart by at least the least n.y of the corners less the larger reach of a ball, +-l n.e + its radius, at every time:
+/// n.y falls by y' and y'' at most, and l grows by `stretch`. Without turn that is exact for the nearest corner and
+/// ball, and the way in is Newton's on a convex function.
 /// `contact_of(cloth, capsule)`: the contact at a moment.
 template <std::size_t Corners, class ContactOf>
 auto advance(const Cloth<Corners>& from, const Cloth<Corners>& to, const Capsule& start, const Capsule& end,
@@ -60,16 +61,17 @@ auto advance(const Cloth<Corners>& from, const Cloth<Corners>& to, const Capsule
     if (contact.distance - offset <= k_touch || step == k_most_steps) return std::pair{t, contact};
     const Vec3& n = contact.normal;
     const Vec3 half = 0.5 * (now.b - now.a);
-    const double length = half.norm(), reach = std::abs(n.dot(half));
-    double growth = std::abs(n.dot(motion.straight)); // of the reach
-    if (length > 0.0) growth += motion.stretch * reach / length;
-    // Up to half of k_touch only: what rounding adds stays on the safe side, and each step is a real one.
-    const double kept = reach + now.radius + offset + 0.5 * k_touch;
+    const double length = half.norm();
+    const Vec3 growth = motion.straight + (length > 0.0 ? Vec3(motion.stretch / length * half) : Vec3(Vec3::Zero()));
     double free = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < Corners; ++k) {
-      const Vec3 place = cloth[k] - middle(now);
-      const double closing = growth - n.dot(velocities[k] - motion.turn.cross(place));
-      free = std::min(free, time_to_close(n.dot(place) - kept, closing, bends[k]));
+    for (const double end_of : {-1.0, 1.0}) { // a and b
+      // Up to half of k_touch only: what rounding adds stays on the safe side, and each step is a real one.
+      const double kept = end_of * n.dot(half) + now.radius_at(0.5 + 0.5 * end_of) + offset + 0.5 * k_touch;
+      for (std::size_t k = 0; k < Corners; ++k) {
+        const Vec3 place = cloth[k] - middle(now);
+        const double closing = end_of * n.dot(growth) - n.dot(velocities[k] - motion.turn.cross(place));
+        free = std::min(free, time_to_close(n.dot(place) - kept, closing, bends[k]));
+      }
     }
     t += free;
     if (!(t <= 1.0)) return std::nullopt;

@@ -1,6 +1,7 @@
 #include "proxies/validate.h"
 
 #include "proxies/capsule_union.h"
+#include "proxies/collider_motion.h"
 #include "proxies/surface_cells.h"
 
 #include <algorithm>
@@ -229,11 +230,7 @@ void measure_frame(const BodyMesh& body, const SkinSamples& samples, std::span<c
 VolumeCount count_volume(const BodyMesh& body, std::span<const Capsule> colliders, std::int64_t first, int points) {
   Box box;
   for (const Vec3& p : body.positions()) box.extend(p);
-  for (const Capsule& c : colliders)
-    for (const Vec3& end : {c.a, c.b}) {
-      box.extend(end - Vec3::Constant(c.radius));
-      box.extend(end + Vec3::Constant(c.radius));
-    }
+  for (const Capsule& c : colliders) box.extend(swept_box(c, c));
   CapsuleUnion proxies;
   proxies.assign(colliders);
   VolumeCount count;

@@ -34,7 +34,7 @@ constexpr double k_default_cover = 3.0; // mm
 constexpr double k_cost_points = 1000;  // points that ask, for the cost of a query
 
 struct Options {
-  std::string character, out, json, curve, region = "garment";
+  std::string character, out, json, curve, region = "garment", kind = "capsule";
   std::optional<std::string> motion, garment;
   int count = 28;
   std::optional<double> max_error_mm, cover_mm;
@@ -118,7 +118,7 @@ void leave_out(const Options& options, const rig::Character& character, const Po
 double query_us(const std::vector<proxies::Proxy>& proxies, const std::vector<Transform>& pose) {
   std::vector<proxies::Capsule> capsules;
   for (const proxies::Proxy& proxy : proxies)
-    capsules.push_back({proxy.a.place(pose), proxy.b.place(pose), proxy.radius});
+    capsules.push_back({proxy.a.place(pose), proxy.b.place(pose), proxy.radius, proxy.taper});
   double least = 1e9, sum = 0.0;
   for (int round = 0; round < 5; ++round) {
     const auto start = std::chrono::steady_clock::now();
@@ -192,6 +192,7 @@ int run(const Options& options) {
   if (options.cover_mm) fit.cover = 1e-3 * *options.cover_mm;
   fit.under_weight = options.under_weight;
   fit.region = region;
+  fit.tapered = options.kind == "tapered";
   fit.symmetric = !options.no_symmetry;
 
   const auto start = std::chrono::steady_clock::now();
@@ -249,6 +250,7 @@ int run(const Options& options) {
     ordered_json json = {{"character", options.character},
                          {"motion", motion},
                          {"region", options.region},
+                         {"kind", options.kind},
                          {"count", result.proxies.size()},
                          {"poses", error.poses},
                          {"symmetric", result.symmetric},
@@ -279,6 +281,10 @@ void add_fit(CLI::App& app, int& status) {
   command->add_option("--motion", options->motion, "Clip (.json) whose poses count; else some 40 strong poses");
   command->add_option("--count", options->count, "How many proxies; with --max-error-mm, the most (128 there)")
       ->check(CLI::Range(1, proxies::k_most_fit_shapes))
+      ->capture_default_str();
+  command
+      ->add_option("--kind", options->kind, "capsule: one radius; tapered: a radius at each end. Spheres where both ends meet")
+      ->check(CLI::IsMember({"capsule", "tapered"}))
       ->capture_default_str();
   command
       ->add_option("--max-error-mm", options->max_error_mm,

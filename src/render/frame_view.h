@@ -27,7 +27,7 @@ struct SurfaceView {
 
 struct CapsuleView {
   Vec3f a, b;
-  float radius = 0.0f;
+  float radius_a = 0.0f, radius_b = 0.0f;
   Colour colour = {0.9f, 0.5f, 0.1f};
 };
 

@@ -37,7 +37,7 @@ Overlay::Overlay()
   float_attribute(0, capsule_vertices_.name(), 4, sizeof(Eigen::Vector4f), 0);
   float_attribute(1, capsules_.name(), 3, sizeof(CapsuleView), offsetof(CapsuleView, a), 1);
   float_attribute(2, capsules_.name(), 3, sizeof(CapsuleView), offsetof(CapsuleView, b), 1);
-  float_attribute(3, capsules_.name(), 1, sizeof(CapsuleView), offsetof(CapsuleView, radius), 1);
+  float_attribute(3, capsules_.name(), 2, sizeof(CapsuleView), offsetof(CapsuleView, radius_a), 1);
   float_attribute(4, capsules_.name(), 3, sizeof(CapsuleView), offsetof(CapsuleView, colour), 1);
   glBindVertexArray(line_array_.name());
   float_attribute(0, lines_.name(), 3, sizeof(LineView), offsetof(LineView, a), 1);

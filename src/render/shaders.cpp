@@ -232,7 +232,7 @@ const char* const k_capsule_vertex = R"glsl(
 layout(location = 0) in vec4 unit; // point of the unit sphere, and which end it belongs to: 0 = a, 1 = b
 layout(location = 1) in vec3 end_a;
 layout(location = 2) in vec3 end_b;
-layout(location = 3) in float radius;
+layout(location = 3) in vec2 radii; // at a and b
 layout(location = 4) in vec3 colour;
 out vec3 v_world, v_normal, v_colour;
 void main() {
@@ -241,8 +241,13 @@ void main() {
   axis = len > 1e-9 ? axis / len : vec3(0.0, 1.0, 0.0);
   vec3 other = abs(axis.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0);
   vec3 u = normalize(cross(other, axis));
-  v_normal = unit.x * u + unit.y * axis + unit.z * cross(u, axis);
-  v_world = mix(end_a, end_b, unit.w) + radius * v_normal;
+  // The equators slide to where the cone touches the balls: a ball's latitudes shrink on one side and grow on the other.
+  float lean = clamp((radii.y - radii.x) / max(len, 1e-9), -1.0, 1.0);
+  float latitude = asin(clamp(unit.y, -1.0, 1.0)), rim = -asin(lean), quarter = asin(1.0);
+  latitude = unit.w < 0.5 ? rim + latitude * (1.0 + rim / quarter) : rim + latitude * (1.0 - rim / quarter);
+  vec2 round = unit.xz / max(length(unit.xz), 1e-9);
+  v_normal = cos(latitude) * (round.x * u + round.y * cross(u, axis)) + sin(latitude) * axis;
+  v_world = mix(end_a, end_b, unit.w) + mix(radii.x, radii.y, unit.w) * v_normal;
   v_colour = colour;
   gl_Position = clip_from_world * vec4(v_world, 1.0);
 }

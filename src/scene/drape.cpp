@@ -84,6 +84,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   for (const proxies::Proxy& proxy : scene.proxies) {
     if (!proxy.enabled) continue;
     add(proxy.radius, proxy.friction);
+    if (proxy.taper != 0.0) add(proxy.taper); // so that the hash of sets without stays what it was
     for (const proxies::Anchor* anchor : {&proxy.a, &proxy.b})
       for (int k = 0; k < anchor->count; ++k) {
         add(anchor->joints[k], anchor->weights[k]);

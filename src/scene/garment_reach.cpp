@@ -51,7 +51,8 @@ std::vector<std::optional<double>> garment_clearance(const rig::Character& chara
     for (std::size_t p = 0; p < proxies.size(); ++p)
       for (std::size_t k = 0; k < balls->size(); ++k) {
         const std::vector<Transform>& pose = poses[k / pins];
-        const proxies::Capsule capsule{proxies[p].a.place(pose), proxies[p].b.place(pose), proxies[p].radius};
+        const proxies::Capsule capsule{proxies[p].a.place(pose), proxies[p].b.place(pose), proxies[p].radius,
+                                       proxies[p].taper};
         const proxies::Capsule& ball = (*balls)[k];
         least[p] = std::min(least[p], proxies::signed_distance(ball.a, capsule).distance - ball.radius);
       }

@@ -37,7 +37,8 @@ void add_proxies(const Session& session, FrameView& view) {
   const auto posed = colliders.swept().end;
   for (std::size_t c = 0; c < posed.size(); ++c) {
     const bool sphere = colliders.proxies()[c].kind == proxies::ProxyKind::sphere;
-    view.capsules.push_back({posed[c].a.cast<float>(), posed[c].b.cast<float>(), static_cast<float>(posed[c].radius),
+    view.capsules.push_back({posed[c].a.cast<float>(), posed[c].b.cast<float>(),
+                             static_cast<float>(posed[c].radius_at(0.0)), static_cast<float>(posed[c].radius_at(1.0)),
                              sphere ? k_sky : k_orange});
   }
 }

@@ -196,12 +196,50 @@ TEST_F(Picture, ACapsuleShowsThroughTheSkinAndStrongerBeforeIt_slow) {
   const SurfaceView skin = sheet.view({0.6f, 0.6f, 0.6f});
   const Image plain = draw(frame({skin}), camera_from(4));
   FrameView inside = frame({skin}), outside = frame({skin});
-  inside.capsules = {{{-0.2f, 1, -0.3f}, {0.2f, 1, -0.3f}, 0.1f, {0.9f, 0.2f, 0.05f}}};
-  outside.capsules = {{{-0.2f, 1, 0.3f}, {0.2f, 1, 0.3f}, 0.1f, {0.9f, 0.2f, 0.05f}}};
+  inside.capsules = {{{-0.2f, 1, -0.3f}, {0.2f, 1, -0.3f}, 0.1f, 0.1f, {0.9f, 0.2f, 0.05f}}};
+  outside.capsules = {{{-0.2f, 1, 0.3f}, {0.2f, 1, 0.3f}, 0.1f, 0.1f, {0.9f, 0.2f, 0.05f}}};
   const int weak = difference(middle(draw(inside, camera_from(4))), middle(plain));
   const int strong = difference(middle(draw(outside, camera_from(4))), middle(plain));
   EXPECT_GT(weak, 25);
   EXPECT_GT(strong, weak + 25);
+}
+
+TEST_F(Picture, AConeCoversThePixelsOfItsBalls_slow) {
+  FrameView view = frame({});
+  const Camera camera = camera_from(4);
+  const Image empty = draw(view, camera);
+  for (const auto& [radius_a, radius_b] : {std::pair(0.05f, 0.3f), std::pair(0.35f, 0.1f), std::pair(0.1f, 0.9f)}) {
+    const Vec3f a(-0.4f, 0.8f, 0.1f), b(0.3f, 1.2f, -0.2f);
+    view.capsules = {{a, b, radius_a, radius_b, {0.9f, 0.2f, 0.05f}}};
+    const Image image = draw(view, camera);
+    std::vector<float> nearest(static_cast<std::size_t>(k_width) * k_height, 1e9f); // pixels beyond any ball's outline
+    for (int k = 0; k <= 200; ++k) {
+      const float t = static_cast<float>(k) / 200.0f, radius = (1 - t) * radius_a + t * radius_b;
+      const Vec3f centre = (1 - t) * a + t * b;
+      const auto middle_at = project(camera, k_width, k_height, centre);
+      // A ball's outline is seen along rays that touch it: a little wider than at its centre's distance.
+      const Vec3f to_eye = camera.eye - centre;
+      const float wide = radius / std::sqrt(1.0f - radius * radius / to_eye.squaredNorm());
+      const auto side_at = project(camera, k_width, k_height, centre + wide * to_eye.cross(Vec3f::UnitX()).normalized());
+      ASSERT_TRUE(middle_at && side_at);
+      const float pixels = (*side_at - *middle_at).norm();
+      for (int y = 0; y < k_height; ++y)
+        for (int x = 0; x < k_width; ++x) {
+          const Eigen::Vector2f pixel(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
+          float& least = nearest[static_cast<std::size_t>(y) * k_width + x];
+          least = std::min(least, (pixel - *middle_at).norm() - pixels);
+        }
+    }
+    int inside = 0;
+    for (int y = 0; y < k_height; ++y)
+      for (int x = 0; x < k_width; ++x) {
+        const float beyond = nearest[static_cast<std::size_t>(y) * k_width + x];
+        if (std::abs(beyond) < 2.0f) continue; // perspective makes outlines ellipses, and the mesh has corners
+        EXPECT_EQ(difference(image.at(x, y), empty.at(x, y)) > 12, beyond < 0.0f) << x << ' ' << y;
+        inside += beyond < 0.0f;
+      }
+    EXPECT_GT(inside, 500);
+  }
 }
 
 TEST_F(Picture, LinesLieOverEverything_slow) {

@@ -235,6 +235,10 @@ std::vector<test::TwinCollider> colliders_near(const std::vector<Vec3>& points, 
     collider.now.a = points[pick(random)] + test::random_point(random, 0.03);
     collider.now.b = k % 3 == 0 ? collider.now.a : Vec3(collider.now.a + test::random_point(random, 0.25));
     collider.now.radius = radius(random);
+    if (k % 4 == 1) {
+      const double length = (collider.now.b - collider.now.a).norm(), most = 0.9 * length; // both ends count
+      collider.now.taper = std::clamp(radius(random) - collider.now.radius, -most, most);
+    }
     collider.before = collider.now;
     const Vec3 move = test::random_point(random, 0.004);
     collider.before.a += move;
@@ -265,6 +269,8 @@ template <class T> WovenCollider<T> as_kernel_wants(const test::TwinCollider& co
   }
   c.per_axis_squared = collider.is_sphere() ? T(0) : static_cast<T>(1.0 / squared);
   c.radius = static_cast<T>(now.radius);
+  c.taper = static_cast<T>(now.taper);
+  if (now.taper != 0.0) c.lean = static_cast<T>(now.taper / std::sqrt(squared * (squared - now.taper * now.taper)));
   c.friction = static_cast<T>(collider.friction);
   c.moved = static_cast<T>(collider.moved());
   c.push_speed_step = static_cast<T>(collider.push_speed_step);
@@ -359,7 +365,8 @@ TYPED_TEST(WovenKernels, EdgesAndFaces) {
       EXPECT_LT(both.worst_x(), Bound<T>::cells);
       both.copy();
     }
-    EXPECT_NEAR(static_cast<double>(hits), static_cast<double>(expected_hits), Bound<T>::k_single ? 4.0 : 0.0);
+    const std::int64_t undecided = Bound<T>::k_single ? both.twin.grazing : 0;
+    EXPECT_LE(std::abs(hits - expected_hits), undecided);
     all_hits += hits;
   });
   EXPECT_GT(all_hits, 1000);

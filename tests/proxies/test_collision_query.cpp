@@ -256,7 +256,7 @@ TEST(CollisionQuery, UnusableInputIsRefusedWithAReproduction) {
       FAIL();
     } catch (const std::invalid_argument& error) {
       EXPECT_THAT(error.what(), ::testing::HasSubstr("collider 0 Capsule{{0.10000000000000001, 0, 0}, "
-                                                     "{0, 0.33333333333333331, 0}, -2.5}"));
+                                                     "{0, 0.33333333333333331, 0}, -2.5, 0}"));
     }
   }
 }

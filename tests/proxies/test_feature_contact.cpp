@@ -13,6 +13,7 @@
 using namespace tutu;
 using namespace tutu::proxies;
 using tutu::test::random_point;
+using tutu::test::random_taper;
 
 namespace {
 
@@ -29,21 +30,24 @@ template <class F> double least(double top, const F& f) {
 
 double searched_distance(const std::array<Vec3, 3>& p, const Capsule& capsule) {
   const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
-  const double squared = least(1.0, [&](double t) {
+  return least(1.0, [&](double t) {
     const Vec3 on_axis = (1 - t) * capsule.a + t * capsule.b;
-    return least(1.0, [&](double w1) {
+    const double squared = least(1.0, [&](double w1) {
       const Vec3 rest = on_axis - p[0] - w1 * e1;
       const double w2 = e2.squaredNorm() > 0 ? std::clamp(rest.dot(e2) / e2.squaredNorm(), 0.0, 1.0 - w1) : 0.0;
       return (rest - w2 * e2).squaredNorm();
     });
+    return std::sqrt(squared) - capsule.radius_at(t);
   });
-  return std::sqrt(squared) - capsule.radius;
 }
 
 double searched_distance(const Vec3& p, const Vec3& q, const Capsule& capsule) {
-  const Capsule thin{capsule.a, capsule.b, 1.0};
-  return 1.0 + least(1.0, [&](double s) { return signed_distance((1 - s) * p + s * q, thin).distance; }) -
-         capsule.radius;
+  return least(1.0, [&](double s) {
+    const Vec3 cloth = (1 - s) * p + s * q;
+    return least(1.0, [&](double t) {
+      return (cloth - (1 - t) * capsule.a - t * capsule.b).norm() - capsule.radius_at(t);
+    });
+  });
 }
 
 /// What FeatureContact promises, whatever the case.
@@ -60,14 +64,15 @@ void expect_promises(const FeatureContact& contact, const std::array<Vec3, 3>& p
   EXPECT_NEAR(contact.normal.norm(), 1.0, 1e-14);
   EXPECT_LE((contact.closest + contact.distance * contact.normal - cloth).norm(), 1e-14);
   const Vec3 on_axis = capsule.a + contact.on_axis * (capsule.b - capsule.a);
-  EXPECT_NEAR((cloth - on_axis).norm() - capsule.radius, contact.distance, 1e-12);
-  EXPECT_LE((on_axis + capsule.radius * contact.normal - contact.closest).norm(), 1e-12);
+  const double radius = capsule.radius_at(contact.on_axis);
+  EXPECT_NEAR((cloth - on_axis).norm() - radius, contact.distance, 1e-12);
+  EXPECT_LE((on_axis + radius * contact.normal - contact.closest).norm(), 1e-12);
   const std::array<double, 3>& w = contact.weights;
   switch (contact.feature) {
   case ClothFeature::vertex: EXPECT_EQ(w[contact.index], 1.0); break;
   case ClothFeature::edge: EXPECT_TRUE(w[contact.index] > 0 && w[contact.index] < 1); break;
   case ClothFeature::face: EXPECT_TRUE(contact.on_axis == 0.0 || contact.on_axis == 1.0); break;
-  case ClothFeature::crossing: EXPECT_EQ(contact.distance, -capsule.radius); break;
+  case ClothFeature::crossing: EXPECT_EQ(contact.distance, -radius); break;
   }
 }
 
@@ -77,8 +82,8 @@ TEST(EdgeContact, IsTheLeastDistanceOfAll) {
   int inside = 0;
   constexpr int k_cases = 5000;
   for (int i = 0; i < k_cases; ++i) {
-    Capsule capsule{random_point(random, 0.3), random_point(random, 0.3), 0.15};
-    if (i % 5 == 0) capsule.b = capsule.a;
+    Capsule capsule{random_point(random, 0.3), random_point(random, 0.3), 0.12, random_taper(random, 0.12, i)};
+    if (i % 5 == 0) capsule.b = capsule.a, capsule.taper = 0.0;
     const Vec3 p = random_point(random, 0.3), q = random_point(random, 0.3);
     const FeatureContact contact = edge_contact(p, q, capsule, Vec3::Zero());
     EXPECT_NEAR(contact.distance, searched_distance(p, q, capsule), 1e-9) << i;
@@ -97,7 +102,7 @@ TEST(EdgeContact, NearlyParallelLosesNothing) {
   for (int i = 0; i < 2000; ++i) {
     const double lean = i % 10 == 0 ? 0.0 : std::pow(10.0, -2 - i % 16);
     const Vec3 a = random_point(random, 0.3), along = random_point(random, 0.5);
-    const Capsule capsule{a, a + along, 0.05};
+    const Capsule capsule{a, a + along, 0.05, random_taper(random, 0.05, i)};
     const double gap = i % 2 ? 0.1 : 0.0;
     const Vec3 sideways = along.cross(random_point(random, 1.0)).normalized();
     const double shift = std::uniform_real_distribution<double>(-1.5, 1.5)(random);
@@ -109,14 +114,19 @@ TEST(EdgeContact, NearlyParallelLosesNothing) {
   }
 }
 
-TEST(TriangleContact, IsTheLeastDistanceOfAll) {
+class TriangleDistance : public ::testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(TriangleContact, TriangleDistance, ::testing::Bool(),
+                         [](const auto& kind) { return kind.param ? "Cones" : "Capsules"; });
+
+TEST_P(TriangleDistance, IsTheLeastOfAll) {
   std::mt19937_64 random(3);
   std::map<ClothFeature, int> seen;
   int inside = 0;
   constexpr int k_cases = 1500;
   for (int i = 0; i < k_cases; ++i) {
     Capsule capsule{random_point(random, 0.4), random_point(random, 0.4), 0.12};
-    if (i % 5 == 0) capsule.b = capsule.a;
+    if (GetParam()) capsule.taper = random_taper(random, 0.12, i);
+    if (i % 5 == 0) capsule.b = capsule.a, capsule.taper = 0.0;
     const std::array<Vec3, 3> p = {random_point(random, 0.4), random_point(random, 0.4), random_point(random, 0.4)};
     const FeatureContact contact = triangle_contact(p[0], p[1], p[2], capsule, Vec3::Zero());
     EXPECT_NEAR(contact.distance, searched_distance(p, capsule), 1e-7) << i;
@@ -126,9 +136,10 @@ TEST(TriangleContact, IsTheLeastDistanceOfAll) {
   }
   EXPECT_GT(inside, 0.3 * k_cases);
   EXPECT_LT(inside, 0.7 * k_cases);
-  for (const ClothFeature feature :
-       {ClothFeature::vertex, ClothFeature::edge, ClothFeature::face, ClothFeature::crossing})
+  for (const ClothFeature feature : {ClothFeature::vertex, ClothFeature::edge, ClothFeature::face})
     EXPECT_GT(seen[feature], 0.08 * k_cases) << static_cast<int>(feature);
+  // Some axes go through flatter than their cone grows: there the wide end is deeper.
+  EXPECT_GT(seen[ClothFeature::crossing], (GetParam() ? 0.04 : 0.08) * k_cases);
 }
 
 TEST(TriangleContact, NormalIsTheGradient) {

@@ -115,7 +115,7 @@ void set(fit::Unit& unit, fit::UnitKind kind, const Vec3& a, const Vec3& b, doub
   unit.kind = kind;
   unit.a = a;
   unit.b = b;
-  unit.radius = radius;
+  unit.radius_a = unit.radius_b = radius;
   unit.skin_a = skin_a;
   unit.skin_b = skin_b;
 }
@@ -130,6 +130,7 @@ TEST(Fit, RecoversACapsule) {
   EXPECT_LT((a - k_limb.a).norm(), 5e-4);
   EXPECT_LT((b - k_limb.b).norm(), 5e-4);
   EXPECT_NEAR(result.proxies[0].radius, k_limb.radius, 5e-4);
+  EXPECT_EQ(result.proxies[0].taper, 0.0);
   const FitError error = measure_fit(body, rest_only(body), result.proxies, FitRegion::garment, 2000);
   // Where all cells are alike the bound is the radius of those that the budget leaves.
   EXPECT_LT(error.under.bound, 4e-3);
@@ -248,6 +249,8 @@ TEST(Fit, DerivativesAreThoseOfTheCost) {
   set(units[0], fit::UnitKind::middle, {0, 0.95, 0.01}, {0, 1.3, -0.02}, 0.11, on_hips, on_hips);
   set(units[1], fit::UnitKind::pair, {0.28, 1.28, 0.01}, {0.55, 1.22, 0.0}, 0.045, on_both, on_arm);
   set(units[2], fit::UnitKind::across, {0.1, 1.1, 0.0}, {-0.1, 1.1, 0.0}, 0.05, on_hips, on_hips);
+  units[0].tapered = units[1].tapered = true;
+  units[1].radius_b = 0.03;
   for (fit::Unit& unit : units) unit.settle(motion);
   fit::PosedShapes shapes;
   fit::Nearest nearest;
@@ -259,16 +262,17 @@ TEST(Fit, DerivativesAreThoseOfTheCost) {
   const std::vector<int> owners = nearest.shape;
   int checked = 0;
   for (std::size_t u = 0; u < units.size(); ++u)
-    for (int k = 0; k < 7; ++k) {
+    for (int k = 0; k < 8; ++k) {
       bool same_owners = true; // where a point changes its shape within the step, the slope has a kink
       constexpr double k_step = 1e-4;
       double there[2];
       for (const int side : {0, 1}) {
         std::vector<fit::Unit> moved = units;
-        double& parameter = k < 3 ? moved[u].a[k] : k < 6 ? moved[u].b[k - 3] : moved[u].radius;
+        double& parameter = k < 3 ? moved[u].a[k] : k < 6 ? moved[u].b[k - 3] : k == 6 ? moved[u].radius_a : moved[u].radius_b;
         parameter += side ? k_step : -k_step;
         if (moved[u].kind == fit::UnitKind::middle) moved[u].a.x() = moved[u].b.x() = 0.0;
         if (moved[u].kind == fit::UnitKind::across) moved[u].b = fit::mirrored(moved[u].a);
+        if (!moved[u].tapered || moved[u].kind == fit::UnitKind::across) moved[u].radius_b = moved[u].radius_a;
         there[side] = fit::cost_of(problem, moved, shapes, nearest);
         same_owners = same_owners && nearest.shape == owners;
       }
@@ -278,7 +282,7 @@ TEST(Fit, DerivativesAreThoseOfTheCost) {
       EXPECT_NEAR(2.0 * gradients[u][k], slope, 2e-3 * (1e-3 + std::abs(slope)) + 2e-6)
           << "unit " << u << ", parameter " << k;
     }
-  EXPECT_GE(checked, 14);
+  EXPECT_GE(checked, 16);
 }
 
 TEST(Fit, TheNearestShapeIsThatOfAllPairs) {
@@ -293,6 +297,7 @@ TEST(Fit, TheNearestShapeIsThatOfAllPairs) {
     units.emplace_back();
     set(units.back(), k % 2 ? fit::UnitKind::pair : fit::UnitKind::one, {0.1 + u, 0.9 + u, 0.0},
         {0.2 + u, 0.8 + u, 0.1}, 0.03, on_hips, on_hips);
+    units.back().radius_b = 0.01 + 0.03 * (k % 3) + (k == 6 ? 0.5 : 0.0); // that one swallows its other end
     units.back().settle(motion);
   }
   fit::PosedShapes shapes;
@@ -305,9 +310,7 @@ TEST(Fit, TheNearestShapeIsThatOfAllPairs) {
                      static_cast<double>(points.blocks.z[i]));
     std::vector<double> of_unit(units.size(), 1e9);
     for (int s = 0; s < shapes.count; ++s) {
-      const std::size_t at = static_cast<std::size_t>(pose) * shapes.count + s;
-      const double d =
-          signed_distance(point, Capsule{shapes.a[at], shapes.b[at], static_cast<double>(shapes.radius[at])}).distance;
+      const double d = signed_distance(point, shapes.capsules[shapes.at(pose, s)]).distance;
       of_unit[shapes.unit[s]] = std::min(of_unit[shapes.unit[s]], d);
     }
     std::sort(of_unit.begin(), of_unit.end());

@@ -42,7 +42,7 @@ TEST(ProxyFile, ReadsTheDocumentedExample) {
      { "capsule": { "joint": "LeftUpLeg", "a": [0,0,0], "b": [0,-0.4,0], "radius": 0.07 }, "friction": 0.5, "enabled": false },
      { "capsule": { "a": { "between": ["LeftUpLeg", "LeftLeg"], "at": 0.25 },
                     "b": { "point": [0.1, 0.9, 0], "joints": [["Hips", 0.7], ["LeftUpLeg", 2.1]] }, "radius": 0.07 } },
-     { "capsule": { "joint": "mixamorig_LeftLeg", "a": [0,0.1,0], "b": { "joint": "hips", "at": [0,0,0.2] }, "radius": 0.05 } }
+     { "capsule": { "joint": "mixamorig_LeftLeg", "a": [0,0.1,0], "b": { "joint": "hips", "at": [0,0,0.2] }, "radius": [0.05, 0.08] } }
      ] })");
   ASSERT_EQ(proxies.size(), 4u);
 
@@ -67,6 +67,9 @@ TEST(ProxyFile, ReadsTheDocumentedExample) {
 
   EXPECT_EQ(proxies[3].a.joints[0], 2);
   EXPECT_EQ(proxies[3].b.joints[0], 0);
+  EXPECT_EQ(proxies[3].radius, 0.05);
+  EXPECT_EQ(proxies[3].taper, 0.08 - 0.05);
+  EXPECT_EQ(proxies[1].taper, 0.0);
 }
 
 TEST(ProxyFile, ASkinnedEndFollowsItsJoints) {
@@ -104,6 +107,13 @@ TEST(ProxyFile, ErrorsNamePlaceFoundAndExpected) {
   expect_error(sphere(R"("joint": "Head", "center": [0,0,0], "radius": 0)"), s + "/radius", "above 0");
   expect_error(sphere(R"("joint": "Head", "center": [0,0,0], "radius": "big")"), s + "/radius", "above 0");
   expect_error(sphere(R"("joint": "Head", "center": [0,0,0])"), s, "radius");
+  expect_error(sphere(R"("joint": "Head", "center": [0,0,0], "radius": [1, 2])"), s + "/radius", "above 0");
+  for (const char* radii : {"[0.1, -0.1]", "[0, 0.1]", "[0.1]", "[0.1, 0.2, 0.3]", "[0.1, \"x\"]"}) {
+    const std::string shape = R"("joint": "Head", "a": [0,0,0], "b": [0,1,0], "radius": )" + std::string(radii);
+    EXPECT_THROW(read_one("{\"capsule\": {" + shape + "}}"), InputError) << radii;
+  }
+  expect_error(R"({"capsule": {"joint": "Head", "a": [0,0,0], "b": [0,1,0], "radius": [0.1, -0.1]}})",
+               "/proxies/0/capsule/radius", "or two: [at a, at b]");
   expect_error(sphere(R"("joint": "Head", "center": [0,0], "radius": 1)"), s + "/center", "3 numbers");
   expect_error(sphere(R"("joint": "Head", "center": 5, "radius": 1)"), s + "/center", "[x, y, z]");
   expect_error(sphere(R"("joint": "Head", "center": [0,0,0], "radius": 1, "raduis": 1)"), s + "/raduis", "unknown key");
@@ -188,6 +198,8 @@ TEST(ProxyFile, RoundTripIsExact) {
     proxy.a = anchor(i % 3);
     proxy.b = i % 2 ? anchor(i / 3 % 3) : proxy.a;
     proxy.radius = uniform(random);
+    if (i % 4 == 1) proxy.taper = uniform(random) - proxy.radius;
+    if (i % 4 == 3) proxy.radius = 0.001 * (1 + i), proxy.taper = 0.08321 - proxy.radius; // decimals stay decimals
     proxy.friction = uniform(random);
     proxy.enabled = i % 7 != 0;
     written.push_back(proxy);
@@ -200,11 +212,16 @@ TEST(ProxyFile, RoundTripIsExact) {
     EXPECT_EQ(read[i].name, written[i].name);
     EXPECT_EQ(read[i].kind, written[i].kind);
     EXPECT_EQ(read[i].radius, written[i].radius);
+    EXPECT_NEAR(read[i].taper, written[i].taper, 1e-15);
+    if (i % 4 == 3) {
+      EXPECT_EQ(read[i].taper, written[i].taper);
+    }
     EXPECT_EQ(read[i].friction, written[i].friction);
     EXPECT_EQ(read[i].enabled, written[i].enabled);
     expect_same(read[i].a, written[i].a);
     expect_same(read[i].b, written[i].b);
   }
+  EXPECT_THAT(read_file(folder / "first.json"), HasSubstr(",0.08321]"));
   write_proxies(folder / "none.json", {}, skeleton);
   EXPECT_TRUE(read_proxies(folder / "none.json", skeleton).empty());
 }
@@ -219,6 +236,9 @@ TEST(ProxyFile, WhatAFileCannotSayIsNotWritten) {
   };
   Proxy bad = good;
   bad.radius = -1.0;
+  expect_refused({bad});
+  bad = good;
+  bad.taper = -1.0; // no radius is left at b
   expect_refused({bad});
   bad = good;
   bad.b = bad.a;

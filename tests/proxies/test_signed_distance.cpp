@@ -28,9 +28,9 @@ double sampled_distance(const Vec3& point, const Capsule& capsule) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= k_samples; ++i) {
     const double t = static_cast<double>(i) / k_samples;
-    least = std::min(least, (point - ((1.0 - t) * capsule.a + t * capsule.b)).norm());
+    least = std::min(least, (point - ((1.0 - t) * capsule.a + t * capsule.b)).norm() - capsule.radius_at(t));
   }
-  return least - capsule.radius;
+  return least;
 }
 
 TEST(SignedDistance, CapsuleMatchesDenseSampling) {
@@ -50,6 +50,43 @@ TEST(SignedDistance, CapsuleMatchesDenseSampling) {
   }
   EXPECT_GT(inside, 0.3 * k_cases);
   EXPECT_LT(inside, 0.7 * k_cases);
+}
+
+TEST(SignedDistance, ConeMatchesDenseSamplingAndItsNormalLeans) {
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> radius(0.05, 0.4);
+  int inside = 0, swallowed = 0, beside = 0;
+  constexpr int k_cases = 3000;
+  for (int i = 0; i < k_cases; ++i) {
+    Capsule capsule{random_point(random, 0.25), random_point(random, 0.25), radius(random)};
+    capsule.taper = radius(random) - capsule.radius;
+    const Vec3 point = random_point(random, 0.3), axis = capsule.b - capsule.a;
+    const Contact contact = signed_distance(point, capsule);
+    const double sampled = sampled_distance(point, capsule);
+    EXPECT_LE(contact.distance, sampled + 1e-15);
+    EXPECT_GE(contact.distance, sampled - axis.norm() / 2000);
+    expect_convention(point, contact);
+    EXPECT_NEAR(signed_distance(contact.closest, capsule).distance, 0.0, 1e-14);
+    inside += contact.distance < 0.0;
+    if (axis.norm() <= std::abs(capsule.taper)) {
+      ++swallowed;
+      EXPECT_EQ(std::abs(cone_sine(capsule)), 1.0);
+      const Vec3& centre = capsule.taper > 0.0 ? capsule.b : capsule.a;
+      EXPECT_NEAR(contact.distance, (point - centre).norm() - capsule.widest(), 1e-14);
+      continue;
+    }
+    const double t = nearest_on_axis(point, capsule);
+    if (t <= 0.0 || t >= 1.0) continue;
+    ++beside;
+    EXPECT_NEAR(contact.normal.dot(axis), -capsule.taper, 1e-12);
+    const Vec3 on_axis = capsule.a + 0.4 * axis;
+    EXPECT_NEAR(normal_on_axis(capsule).dot(axis), -capsule.taper, 1e-12);
+    EXPECT_NEAR(signed_distance(on_axis, capsule).distance, -capsule.radius_at(0.4), 1e-12);
+  }
+  EXPECT_GT(inside, 0.3 * k_cases);
+  EXPECT_LT(inside, 0.7 * k_cases);
+  EXPECT_GT(swallowed, 0.05 * k_cases);
+  EXPECT_GT(beside, 0.2 * k_cases);
 }
 
 TEST(SignedDistance, NormalIsTheGradient) {

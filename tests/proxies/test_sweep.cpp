@@ -21,7 +21,8 @@ namespace {
 std::pair<Capsule, Capsule> random_moving_capsule(std::mt19937_64& random, double motion, int i) {
   std::uniform_real_distribution<double> radius(0.03, 0.1);
   Capsule start{random_point(random, 0.3), random_point(random, 0.3), radius(random)};
-  if (i % 5 == 0) start.b = start.a;
+  start.taper = test::random_taper(random, start.radius, i / 7);
+  if (i % 5 == 0) start.b = start.a, start.taper = 0.0;
   Capsule end = start;
   end.a += random_point(random, motion);
   end.b = i % 5 == 0 ? end.a : Vec3(end.b + random_point(random, motion));

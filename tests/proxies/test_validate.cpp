@@ -1,6 +1,7 @@
 // Proxies against bodies whose shape is known, and bounds against denser samples.
 #include "proxies/capsule_union.h"
 #include "proxies/error_figures.h"
+#include "proxies/signed_distance.h"
 #include "proxies/surface_cells.h"
 #include "proxies/validate.h"
 #include "tests/support/capsule_body.h"
@@ -183,23 +184,28 @@ TEST(Validate, SamplesCoverTheirTriangleWithinTheCellRadius) {
 TEST(Validate, CellsCoverACapsulesSurfaceWithinTheirRadius) {
   std::mt19937_64 random(6);
   std::normal_distribution<double> normal;
-  for (const Capsule& capsule : {Capsule{{0, 0, 0}, {0.1, 0.3, -0.2}, 0.07}, Capsule{{0.1, 0, 0}, {0.1, 0, 0}, 0.1}}) {
+  for (const Capsule& capsule :
+       {Capsule{{0, 0, 0}, {0.1, 0.3, -0.2}, 0.07}, Capsule{{0.1, 0, 0}, {0.1, 0, 0}, 0.1},
+        Capsule{{0, 0, 0}, {0.1, 0.3, -0.2}, 0.07, 0.2}, Capsule{{0, 0, 0}, {0.1, 0.3, -0.2}, 0.12, -0.1},
+        Capsule{{0, 0, 0}, {0.1, 0.1, 0}, 0.05, 0.2}}) {
     const std::vector<Capsule> one = {capsule};
     for (const int count : {10, 200}) {
       const CapsuleSurface surface(capsule);
       const std::vector<SurfaceCell> cells = surface_cells(one, count);
       double area = 0.0;
       for (const SurfaceCell& cell : cells) area += surface.area(cell);
+      EXPECT_NEAR(area, surface.area(), 1e-12);
       const double length = (capsule.b - capsule.a).norm();
-      EXPECT_NEAR(area, 2.0 * std::numbers::pi * capsule.radius * (length + 2.0 * capsule.radius), 1e-12);
+      if (capsule.taper == 0.0) {
+        EXPECT_NEAR(area, 2.0 * std::numbers::pi * capsule.radius * (length + 2.0 * capsule.radius), 1e-12);
+      }
       CapsuleUnion solid;
       solid.assign(one);
       for (const SurfaceCell& cell : cells) EXPECT_NEAR(solid.distance(surface.middle(cell)), 0.0, 1e-12);
       for (int round = 0; round < 500; ++round) { // a random point of the surface
         const Vec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized();
-        const Vec3 on_axis = capsule.a + (round % 11) / 10.0 * (capsule.b - capsule.a);
-        const Vec3 p = on_axis + capsule.radius * direction;
-        if (solid.distance(p) < -1e-9) continue; // not on the surface: it leans along the axis
+        const Vec3 p = signed_distance(capsule.a + 2.0 * length * direction + 0.1 * direction, capsule).closest;
+        EXPECT_NEAR(solid.distance(p), 0.0, 1e-12);
         const bool covered = std::any_of(cells.begin(), cells.end(), [&](const SurfaceCell& cell) {
           return (surface.middle(cell) - p).norm() <= surface.radius(cell) + 1e-12;
         });

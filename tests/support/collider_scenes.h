@@ -15,6 +15,12 @@ inline Vec3 random_point(std::mt19937_64& random, double extent) {
   return {uniform(random), uniform(random), uniform(random)};
 }
 
+/// For the i-th capsule of a test: 0 for one of three, else what makes the other radius 0.3 to 2 times the first.
+inline double random_taper(std::mt19937_64& random, double radius, int i) {
+  const double share = std::uniform_real_distribution<double>(0.3, 2.0)(random);
+  return i % 3 == 1 ? 0.0 : radius * (share - 1.0);
+}
+
 /// Capsules at both ends of a frame, and the points that ask.
 struct ColliderScene {
   std::vector<proxies::Capsule> start, end;
@@ -29,7 +35,8 @@ struct ColliderScene {
   }
 };
 
-/// Capsules of any direction in a cube of 80 cm; every fifth a sphere. Their ends go up to `motion` (m) along each
+/// Capsules of any direction in a cube of 80 cm; every fifth a sphere, of the others most with two radii, some of which
+/// are so short that one end holds the other. Their ends go up to `motion` (m) along each
 /// axis.
 inline ColliderScene random_scene(std::mt19937_64& random, int colliders, int points, double motion) {
   std::uniform_real_distribution<double> radius(0.02, 0.12);
@@ -38,8 +45,9 @@ inline ColliderScene random_scene(std::mt19937_64& random, int colliders, int po
     const Vec3 a = random_point(random, 0.4), move = random_point(random, motion);
     const Vec3 length = i % 5 == 0 ? Vec3(Vec3::Zero()) : random_point(random, 0.3);
     const Vec3 turn = i % 5 == 0 ? Vec3(Vec3::Zero()) : random_point(random, motion);
-    scene.start.push_back({a, a + length, radius(random)});
-    scene.end.push_back({a + move, a + length + move + turn, scene.start.back().radius});
+    const double at_a = radius(random), taper = i % 5 == 0 ? 0.0 : random_taper(random, at_a, i);
+    scene.start.push_back({a, a + length, at_a, taper});
+    scene.end.push_back({a + move, a + length + move + turn, at_a, taper});
   }
   for (int i = 0; i < points; ++i) scene.points.push_back(random_point(random, 0.5));
   return scene;
