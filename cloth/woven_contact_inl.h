@@ -299,7 +299,7 @@ void contact_low_cells(const WovenSheetView<T>& sheet, int block, int first, int
 
 template <bool k_tapered, class T>
 void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
-                   const CellFeatures<T>& features, std::int64_t* contacts) {
+                      const CellFeatures<T>& features, std::int64_t* contacts) {
   if (!features.high) {
     contact_low_cells<k_tapered>(sheet, block, first, last, collider, features, contacts);
     return;
@@ -319,8 +319,9 @@ void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int 
       // on how many there are.
       const Wide3<T> middle = times(half, plus(b.x, d.x)), m = minus(middle, c.a);
       const Wide3<T> to_b = minus(b.x, middle), to_a = minus(a.x, middle), to_e = minus(e.x, middle);
-      const Wide<T> reach =
-          set(widest(collider)) + hn::Sqrt(hn::Max(dot(to_b, to_b), hn::Max(dot(to_a, to_a), dot(to_e, to_e)))) + set(T(1e-6));
+      const Wide<T> reach = set(widest(collider)) +
+                            hn::Sqrt(hn::Max(dot(to_b, to_b), hn::Max(dot(to_a, to_a), dot(to_e, to_e)))) +
+                            set(T(1e-6));
       const Wide<T> squared_reach = reach * reach;
       const Wide3<T> away = minus_times<T>(m, clamped<T>(dot(m, c.axis) * c.per_axis_squared), c.axis);
       const auto near = dot(away, away) < squared_reach;

@@ -111,7 +111,8 @@ template <class T> void WovenContacts<T>::place(const Vec3& origin, double s, do
     c.per_axis_squared = is_sphere ? T(0) : static_cast<T>(1.0 / squared);
     c.radius = static_cast<T>(now.radius + offset_);
     c.taper = static_cast<T>(now.taper);
-    c.lean = now.taper == 0.0 ? T(0) : static_cast<T>(now.taper / std::sqrt(squared * (squared - now.taper * now.taper)));
+    c.lean =
+        now.taper == 0.0 ? T(0) : static_cast<T>(now.taper / std::sqrt(squared * (squared - now.taper * now.taper)));
     copy(move_a, c.move_a);
     copy(Vec3(move_b - move_a), c.move_axis);
     Vec3 spin = Vec3::Zero();

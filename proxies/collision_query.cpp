@@ -90,8 +90,8 @@ private:
   static constexpr double k_least_square = 1e-200; // m2; shorter axes (1e-100 m) count as points: 1 / it is finite
 
   Vec3 from_, axis_;
-  double share_of_axis_ = 0.0;         // 1 / |axis|^2; 0 for a sphere
-  double limit_ = 0.0;                 // distance from the axis at a
+  double share_of_axis_ = 0.0; // 1 / |axis|^2; 0 for a sphere
+  double limit_ = 0.0;         // distance from the axis at a
   double taper_ = 0.0, lean_ = 0.0;
 };
 

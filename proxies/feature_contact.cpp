@@ -54,7 +54,8 @@ Pair nearest_of_segments(const Vec3& p, const Vec3& u, const Vec3& a, const Vec3
 }
 
 /// The unit vector perpendicular to the edge u that leans against the axis v as the cone does, on the side of u x v or,
-/// where `flipped`, of v x u. Nothing where there is none: the two are parallel, or the edge lies steeper than the cone.
+/// where `flipped`, of v x u. Nothing where there is none: the two are parallel, or the edge lies steeper than the
+/// cone.
 std::optional<Vec3> cone_normal(const Vec3& u, const Vec3& v, double taper, bool flipped) {
   const Vec3 n = flipped ? v.cross(u) : u.cross(v);
   const double length = n.norm(), edge = u.norm();
@@ -82,8 +83,7 @@ Pair nearest_of_cone(const Vec3& p, const Vec3& u, const Capsule& capsule) {
 
 Nearest edge_of(int index, int corners, const Vec3& p, const Vec3& q, const Capsule& capsule) {
   const Vec3 u = q - p, v = capsule.b - capsule.a;
-  const auto [s, t] =
-      capsule.taper == 0.0 ? nearest_of_segments(p, u, capsule.a, v) : nearest_of_cone(p, u, capsule);
+  const auto [s, t] = capsule.taper == 0.0 ? nearest_of_segments(p, u, capsule.a, v) : nearest_of_cone(p, u, capsule);
   const int next = (index + 1) % corners;
   Nearest nearest{(p + s * u - capsule.a - t * v).norm() - capsule.radius_at(t), t, {}, ClothFeature::edge, index};
   nearest.weights[index] = 1.0 - s;

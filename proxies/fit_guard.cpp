@@ -152,7 +152,8 @@ double Guard::cost(const Unit& unit, const BodyMotion& motion, const Strength& s
     along.cwiseAbs().minCoeff(&least);
     const Vec3 across = along.cross(Vec3::Unit(least)).normalized(), third = along.cross(across);
     // Of a cone: its mean girth, and normals that lean as its side does.
-    const double ra = unit.radius_a, rb = unit.radius_b, sine = std::clamp((rb - ra) / std::max(length, 1e-9), -1.0, 1.0),
+    const double ra = unit.radius_a, rb = unit.radius_b,
+                 sine = std::clamp((rb - ra) / std::max(length, 1e-9), -1.0, 1.0),
                  cosine = std::sqrt(1.0 - sine * sine);
     const double side = std::numbers::pi * (ra + rb) * cosine * cosine * length,
                  caps = 2.0 * std::numbers::pi * (ra * ra + rb * rb);

@@ -41,9 +41,16 @@ template <bool k_tapered> HWY_INLINE Wide distances(const Shapes& s, Wide x, Wid
 /// One shape in all lanes.
 HWY_INLINE Shapes same(const ShapeArrays& a, std::size_t i) {
   const Tag tag;
-  return {hn::Set(tag, a.ax[i]),     hn::Set(tag, a.ay[i]),    hn::Set(tag, a.az[i]), hn::Set(tag, a.dx[i]),
-          hn::Set(tag, a.dy[i]),     hn::Set(tag, a.dz[i]),    hn::Set(tag, a.inverse_square[i]),
-          hn::Set(tag, a.radius[i]), hn::Set(tag, a.taper[i]), hn::Set(tag, a.lean[i])};
+  return {hn::Set(tag, a.ax[i]),
+          hn::Set(tag, a.ay[i]),
+          hn::Set(tag, a.az[i]),
+          hn::Set(tag, a.dx[i]),
+          hn::Set(tag, a.dy[i]),
+          hn::Set(tag, a.dz[i]),
+          hn::Set(tag, a.inverse_square[i]),
+          hn::Set(tag, a.radius[i]),
+          hn::Set(tag, a.taper[i]),
+          hn::Set(tag, a.lean[i])};
 }
 
 HWY_INLINE Wide load(const float* from) { return hn::LoadU(Tag(), from); }
@@ -54,9 +61,16 @@ void from_shapes(const ShapeArrays& a, std::size_t first, int count, float x, fl
   const Wide wide_x = hn::Set(tag, x), wide_y = hn::Set(tag, y), wide_z = hn::Set(tag, z);
   for (int k = 0; k < count; k += width) {
     const std::size_t i = first + k;
-    const Shapes shapes = {load(a.ax + i), load(a.ay + i), load(a.az + i),
-                           load(a.dx + i), load(a.dy + i), load(a.dz + i),
-                           load(a.inverse_square + i), load(a.radius + i), load(a.taper + i), load(a.lean + i)};
+    const Shapes shapes = {load(a.ax + i),
+                           load(a.ay + i),
+                           load(a.az + i),
+                           load(a.dx + i),
+                           load(a.dy + i),
+                           load(a.dz + i),
+                           load(a.inverse_square + i),
+                           load(a.radius + i),
+                           load(a.taper + i),
+                           load(a.lean + i)};
     hn::StoreU(distances<true>(shapes, wide_x, wide_y, wide_z), tag, out + k);
   }
 }

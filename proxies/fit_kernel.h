@@ -17,8 +17,8 @@ struct ShapeArrays {
   const float* lean;                        ///< as CapsuleUnion has it; 0 without taper
 };
 
-/// Signed distances of one point from the shapes first .. first + count - 1. `out` has room up to a multiple of k_lanes,
-/// where what is beyond count means nothing.
+/// Signed distances of one point from the shapes first .. first + count - 1. `out` has room up to a multiple of
+/// k_lanes, where what is beyond count means nothing.
 void distances_from_shapes(const ShapeArrays& shapes, std::size_t first, int count, float x, float y, float z,
                            float* out);
 

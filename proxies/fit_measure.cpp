@@ -71,7 +71,8 @@ struct Scene {
 double from_shapes(const Scene& scene, const Vec3& point, int without = -1) {
   double least = std::numeric_limits<double>::infinity();
   for (int s = 0; s < scene.shapes.count; ++s)
-    if (s != without) least = std::min(least, signed_distance(point, scene.shapes.capsules[scene.shapes.at(scene.pose, s)]).distance);
+    if (s != without)
+      least = std::min(least, signed_distance(point, scene.shapes.capsules[scene.shapes.at(scene.pose, s)]).distance);
   return least;
 }
 

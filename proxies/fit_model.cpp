@@ -184,8 +184,9 @@ void PosedShapes::set(std::size_t i, const Capsule& capsule) {
     lean = taper / std::sqrt(squared * (squared - taper * taper));
   }
   const Vec3 d = shape.b - shape.a;
-  const std::array<double, 10> values = {shape.a.x(), shape.a.y(), shape.a.z(), d.x(), d.y(), d.z(),
-                                         squared > 0.0 ? 1.0 / squared : 0.0, shape.radius, taper, lean};
+  const std::array<double, 10> values = {
+      shape.a.x(),  shape.a.y(), shape.a.z(), d.x(), d.y(), d.z(), squared > 0.0 ? 1.0 / squared : 0.0,
+      shape.radius, taper,       lean};
   for (std::size_t k = 0; k < values.size(); ++k) arrays_[k][i] = static_cast<float>(values[k]);
 }
 

@@ -13,7 +13,8 @@ inline constexpr double k_on_axis = 1e-12;
 /// noise.
 inline constexpr double k_vertical = 1e-12;
 
-/// Sine of a capsule's cone: a normal of its side leans by that from perpendicular to the axis, towards the thinner end,
+/// Sine of a capsule's cone: a normal of its side leans by that from perpendicular to the axis, towards the thinner
+/// end,
 ///   n . (b - a) = -taper,
 /// since there |p - c(t)| - r(t) is least along the axis, and rises the same way on both sides of c(t).
 /// 0 without taper; +-1 where the larger end ball is all there is.

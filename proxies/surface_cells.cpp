@@ -42,9 +42,10 @@ CapsuleSurface::CapsuleSurface(const Capsule& capsule)
 }
 
 double CapsuleSurface::area() const {
-  return 2.0 * k_pi * (radius_a_ * radius_a_ * (1.0 - std::sin(rim(CapsulePart::cap_a))) +
-                  radius_b_ * radius_b_ * (1.0 - std::sin(rim(CapsulePart::cap_b))) +
-                  0.5 * slant() * cosine_ * (radius_a_ + radius_b_));
+  return 2.0 * k_pi *
+         (radius_a_ * radius_a_ * (1.0 - std::sin(rim(CapsulePart::cap_a))) +
+          radius_b_ * radius_b_ * (1.0 - std::sin(rim(CapsulePart::cap_b))) +
+          0.5 * slant() * cosine_ * (radius_a_ + radius_b_));
 }
 
 double CapsuleSurface::rim(CapsulePart cap) const { return std::asin(cap == CapsulePart::cap_a ? sine_ : -sine_); }

@@ -28,8 +28,8 @@ public:
   double area() const; ///< m2, of all of it, exact
   /// Latitude at which a cap meets the side: 0 without taper, and of opposite signs at both ends (cone_sine).
   double rim(CapsulePart cap) const;
-  double slant() const { return cosine_ * length_; } ///< m, of the side from rim to rim
-  double radius_of(CapsulePart cap) const;           ///< m
+  double slant() const { return cosine_ * length_; }  ///< m, of the side from rim to rim
+  double radius_of(CapsulePart cap) const;            ///< m
   double from_axis(CapsulePart part, double u) const; ///< m
 
   Vec3 middle(const SurfaceCell& cell) const; ///< of the parameters; on the surface
@@ -45,8 +45,8 @@ private:
   double around(const SurfaceCell& cell) const; ///< m, half its largest extent in v
 
   Vec3 a_, axis_, x_, y_; ///< axis: from a to b, unit (+Y for a sphere); x, y across it
-  double length_;            ///< 0 where one ball is all
-  double sine_, cosine_;     ///< of the cone
+  double length_;         ///< 0 where one ball is all
+  double sine_, cosine_;  ///< of the cone
   double radius_a_, radius_b_;
 };
 

@@ -34,11 +34,10 @@ template <std::size_t Corners> Cloth<Corners> cloth_at(const Cloth<Corners>& fro
 /// axis. There the axis only grows or shrinks along its direction e, and a corner of the cloth goes on a curve y(t)
 /// with
 ///   y' = v - turn x rho,   |y''| <= 2 |turn| |v| + |turn|^2 |rho|,   rho, v: place and velocity from the middle.
-/// Both are convex, the capsule as the hull of its end balls, so with the contact's normal n fixed in that frame they are
-/// apart by at least the least n.y of the corners less the larger reach of a ball, +-l n.e + its radius, at every time:
-/// n.y falls by y' and y'' at most, and l grows by `stretch`. Without turn that is exact for the nearest corner and
-/// ball, and the way in is Newton's on a convex function.
-/// `contact_of(cloth, capsule)`: the contact at a moment.
+/// Both are convex, the capsule as the hull of its end balls, so with the contact's normal n fixed in that frame they
+/// are apart by at least the least n.y of the corners less the larger reach of a ball, +-l n.e + its radius, at every
+/// time: n.y falls by y' and y'' at most, and l grows by `stretch`. Without turn that is exact for the nearest corner
+/// and ball, and the way in is Newton's on a convex function. `contact_of(cloth, capsule)`: the contact at a moment.
 template <std::size_t Corners, class ContactOf>
 auto advance(const Cloth<Corners>& from, const Cloth<Corners>& to, const Capsule& start, const Capsule& end,
              double offset, const ContactOf& contact_of)

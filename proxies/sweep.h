@@ -43,8 +43,8 @@ std::optional<FeatureImpact> time_of_impact(const std::array<Vec3, 3>& from, con
                                             const Capsule& start, const Capsule& end, double offset);
 
 /// How far cloth may move relative to a capsule in one step, m, so that the contact at the end of the step alone cannot
-/// let it through: any motion below this is safe, this one is not. `radius`: of a cone the smaller. `offset` (m, >= 0): how far from the surface the
-/// cloth was when the step began; 0 where no more is known than that it was outside.
+/// let it through: any motion below this is safe, this one is not. `radius`: of a cone the smaller. `offset` (m, >= 0):
+/// how far from the surface the cloth was when the step began; 0 where no more is known than that it was outside.
 ///
 /// Let R = radius + offset, p0 and p1 a point of the cloth at both ends of the step, q0 and q1 those of the axis' point
 /// that is nearest to p1 at the end, and m the length of the relative motion w = (p1 - q1) - (p0 - q0). Suppose m < R.
@@ -52,10 +52,10 @@ std::optional<FeatureImpact> time_of_impact(const std::array<Vec3, 3>& from, con
 ///   |p1 - q1| = |u + w| >= |u| - m > 0            it is not on the axis, and, on straight ways, never was;
 ///   (p1 - q1) . u = |u|^2 + w . u >= |u| (|u| - m) > 0
 /// so the normal of the end pose, (p1 - q1) / |p1 - q1|, points to the side on which the axis saw the cloth before; by
-/// less than asin(m / R) it differs from that direction. (Of a cone q is the centre of the nearest ball, whose radius is
-/// at least the smaller one.) A push along it comes out on the side it came from. At m = R
-/// a point may lie on the axis, from where every way out is as near; beyond, it is pushed out on the far side; from 2 R
-/// on it is not even seen inside. For edges and triangles the same holds point by point.
+/// less than asin(m / R) it differs from that direction. (Of a cone q is the centre of the nearest ball, whose radius
+/// is at least the smaller one.) A push along it comes out on the side it came from. At m = R a point may lie on the
+/// axis, from where every way out is as near; beyond, it is pushed out on the far side; from 2 R on it is not even seen
+/// inside. For edges and triangles the same holds point by point.
 ///
 /// The relative motion of any point of the cloth and any point of the axis is no longer than the longest of a vertex
 /// relative to an end of the axis. An arc adds to what happens within the step, not to the end: the axis leaves its

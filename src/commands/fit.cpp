@@ -1,5 +1,6 @@
 // tutu fit: proxies for a character, and what they cost in error.
 #include "proxies/fit.h"
+#include "proxies/body_mesh.h"
 #include "proxies/proxy_file.h"
 #include "proxies/signed_distance.h"
 #include "rig/clip_file.h"
@@ -184,7 +185,13 @@ int run(const Options& options) {
   const rig::Character& character = import.character;
   std::string motion;
   const Poses poses = poses_for(options, import, motion);
-  if (options.garment) garments_for(options, character); // what is wrong with it is said before the work
+  // What is wrong with garment and body is said before the work.
+  if (options.garment) garments_for(options, character);
+  try {
+    const proxies::BodyMesh body(character.mesh.positions, character.mesh.triangles);
+  } catch (const std::invalid_argument& problem) {
+    throw InputError(options.character, problem.what(), "", ""); // says what was found and expected
+  }
   const auto region = options.region == "body" ? proxies::FitRegion::body : proxies::FitRegion::garment;
   proxies::FitOptions fit;
   fit.count = options.max_error_mm && options.count == Options{}.count ? 128 : options.count;
@@ -214,14 +221,12 @@ int run(const Options& options) {
   catch_interrupt(); // a second Ctrl-C ends the measuring
   if (options.garment) leave_out(options, character, poses, result.proxies, reach);
   const Poses measured = thinned(poses, k_measured_poses);
-  try {
+  {
     Progress bar("measuring", 100);
     error = proxies::measure_fit(character, measured, result.proxies, region, 3000, [&](double share) {
       bar.tick(static_cast<int>(100.0 * share));
       return !interrupted();
     });
-  } catch (const std::invalid_argument& problem) {
-    throw InputError(options.character, "", problem.what(), "a body with an inside");
   }
 
   fmt::print("{} proxies in {:.1f} s; {}; {}{}\n", result.proxies.size(), seconds,
@@ -247,16 +252,11 @@ int run(const Options& options) {
     fmt::print("\n{}: {} proxies\n", options.out, result.proxies.size());
   }
   if (!options.json.empty()) {
-    ordered_json json = {{"character", options.character},
-                         {"motion", motion},
-                         {"region", options.region},
-                         {"kind", options.kind},
-                         {"count", result.proxies.size()},
-                         {"poses", error.poses},
-                         {"symmetric", result.symmetric},
-                         {"interrupted", result.interrupted},
-                         {"under_mm", json_of(error.under)},
-                         {"over_mm", json_of(error.over)}};
+    ordered_json json = {{"character", options.character},   {"motion", motion},
+                         {"region", options.region},         {"kind", options.kind},
+                         {"count", result.proxies.size()},   {"poses", error.poses},
+                         {"symmetric", result.symmetric},    {"interrupted", result.interrupted},
+                         {"under_mm", json_of(error.under)}, {"over_mm", json_of(error.over)}};
     json["curve"] = ordered_json::array();
     for (const proxies::FitCurvePoint& p : result.curve)
       json["curve"].push_back({{"count", p.count},
@@ -283,7 +283,8 @@ void add_fit(CLI::App& app, int& status) {
       ->check(CLI::Range(1, proxies::k_most_fit_shapes))
       ->capture_default_str();
   command
-      ->add_option("--kind", options->kind, "capsule: one radius; tapered: a radius at each end. Spheres where both ends meet")
+      ->add_option("--kind", options->kind,
+                   "capsule: one radius; tapered: a radius at each end. Spheres where both ends meet")
       ->check(CLI::IsMember({"capsule", "tapered"}))
       ->capture_default_str();
   command

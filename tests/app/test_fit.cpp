@@ -28,6 +28,23 @@ TEST(FitCommand, WritesProxiesThatMeetTheirNote_slow) {
   EXPECT_GE(figures["curve"].size(), 3u);
 }
 
+TEST(FitCommand, TwoRadiiMissByLess_slow) {
+  const auto folder = scratch_folder();
+  const auto figures_of = [&](const std::string& kind) {
+    const std::string out = (folder / (kind + ".json")).string(), json = (folder / "f.json").string();
+    const Outcome fit = run_program({"fit", dancer(), "--count", "20", "--kind", kind, "--out", out, "--json", json});
+    EXPECT_EQ(fit.status, 0) << fit.output;
+    return nlohmann::json::parse(read_file(json));
+  };
+  const auto plain = figures_of("capsule"), tapered = figures_of("tapered");
+  for (const char* side : {"under_mm", "over_mm"})
+    EXPECT_LT(tapered[side]["rms"].get<double>(), plain[side]["rms"].get<double>()) << side;
+  const auto proxies = nlohmann::json::parse(read_file(folder / "tapered.json"));
+  EXPECT_TRUE(std::any_of(proxies["proxies"].begin(), proxies["proxies"].end(), [](const auto& proxy) {
+    return proxy.contains("capsule") && proxy["capsule"]["radius"].is_array();
+  }));
+}
+
 TEST(FitCommand, LeavesOutWhatNoGarmentReaches_slow) {
   const auto folder = scratch_folder();
   const std::string json = (folder / "f.json").string();
@@ -49,6 +66,7 @@ TEST(FitCommand, SaysWhatIsWrong) {
     EXPECT_THAT(outcome.output, HasSubstr(words));
   };
   refuses({dancer(), "--count", "0"}, "count");
+  refuses({dancer(), "--kind", "box"}, "--kind");
   refuses({dancer(), "--max-error-mm", "nan"}, "finite");
   refuses({dancer(), "--for", "nowhere.json"}, "nowhere.json");
   refuses({dancer(), "--curve", "curve.pdf"}, ".svg or .png");

@@ -208,8 +208,10 @@ TEST_F(Picture, AConeCoversThePixelsOfItsBalls_slow) {
   FrameView view = frame({});
   const Camera camera = camera_from(4);
   const Image empty = draw(view, camera);
-  for (const auto& [radius_a, radius_b] : {std::pair(0.05f, 0.3f), std::pair(0.35f, 0.1f), std::pair(0.1f, 0.9f)}) {
-    const Vec3f a(-0.4f, 0.8f, 0.1f), b(0.3f, 1.2f, -0.2f);
+  const Vec3f a(-0.4f, 0.8f, 0.1f);
+  for (const auto& [b, radius_a, radius_b] :
+       {std::tuple(Vec3f(0.3f, 1.2f, -0.2f), 0.05f, 0.3f), std::tuple(Vec3f(0.3f, 1.2f, -0.2f), 0.35f, 0.1f),
+        std::tuple(Vec3f(-0.3f, 0.9f, 0.1f), 0.05f, 0.3f)}) { // one ball holds both
     view.capsules = {{a, b, radius_a, radius_b, {0.9f, 0.2f, 0.05f}}};
     const Image image = draw(view, camera);
     std::vector<float> nearest(static_cast<std::size_t>(k_width) * k_height, 1e9f); // pixels beyond any ball's outline
@@ -220,7 +222,8 @@ TEST_F(Picture, AConeCoversThePixelsOfItsBalls_slow) {
       // A ball's outline is seen along rays that touch it: a little wider than at its centre's distance.
       const Vec3f to_eye = camera.eye - centre;
       const float wide = radius / std::sqrt(1.0f - radius * radius / to_eye.squaredNorm());
-      const auto side_at = project(camera, k_width, k_height, centre + wide * to_eye.cross(Vec3f::UnitX()).normalized());
+      const auto side_at =
+          project(camera, k_width, k_height, centre + wide * to_eye.cross(Vec3f::UnitX()).normalized());
       ASSERT_TRUE(middle_at && side_at);
       const float pixels = (*side_at - *middle_at).norm();
       for (int y = 0; y < k_height; ++y)

@@ -176,6 +176,28 @@ TEST_F(ValidateCommand, BodiesWithoutSidesAreStatus2) {
   write_capsule_character(folder_ / "inverted.dae", inverted, {0, 0.5, 0});
   expect_refused({"validate", scene({k_trunk}, "still.json", "inverted.dae")},
                  HasSubstr("inverted.dae: body mesh: found a body turned inside out, expected "));
+  CapsuleBody flat;
+  flat.add(k_trunk, 24, 6, 4);
+  float height = 0.0f; // all corners apart, on one line
+  for (Vec3f& p : flat.positions) p = Vec3f(0.0f, height += 0.01f, 0.0f);
+  write_capsule_character(folder_ / "flat.dae", flat, {0, 0.5, 0}, 0.0);
+  expect_refused({"validate", scene({k_trunk}, "still.json", "flat.dae")}, HasSubstr("area"));
+  expect_refused({"fit", (folder_ / "flat.dae").string(), "--motion", (folder_ / "still.json").string()},
+                 AllOf(HasSubstr("flat.dae"), HasSubstr("area")));
+  expect_refused({"fit", (folder_ / "inverted.dae").string(), "--motion", (folder_ / "still.json").string()},
+                 AllOf(HasSubstr("inverted.dae"), HasSubstr("inside out")));
+}
+
+TEST_F(ValidateCommand, ABodyThatIsNoManifoldIsMeasuredByWindingNumbers) {
+  CapsuleBody fin;
+  fin.add(k_trunk, 24, 6, 4);
+  const std::uint32_t tip = static_cast<std::uint32_t>(fin.positions.size());
+  fin.positions.emplace_back(0.4f, 0.5f, 0.0f);
+  fin.triangles.push_back({fin.triangles[30][0], fin.triangles[30][1], tip}); // a third triangle on an edge
+  write_capsule_character(folder_ / "fin.dae", fin, {0, 0.5, 0});
+  const Outcome outcome = validate({scene({k_trunk}, "still.json", "fin.dae")});
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("winding number"));
 }
 
 TEST_F(ValidateCommand, InterruptedItLeavesNothing_slow) {

@@ -44,9 +44,8 @@ double searched_distance(const std::array<Vec3, 3>& p, const Capsule& capsule) {
 double searched_distance(const Vec3& p, const Vec3& q, const Capsule& capsule) {
   return least(1.0, [&](double s) {
     const Vec3 cloth = (1 - s) * p + s * q;
-    return least(1.0, [&](double t) {
-      return (cloth - (1 - t) * capsule.a - t * capsule.b).norm() - capsule.radius_at(t);
-    });
+    return least(1.0,
+                 [&](double t) { return (cloth - (1 - t) * capsule.a - t * capsule.b).norm() - capsule.radius_at(t); });
   });
 }
 

@@ -14,31 +14,35 @@
 namespace tutu::proxies {
 namespace {
 
-/// Adds a closed capsule of triangles, all on one joint.
+/// Adds a closed capsule of triangles, of one radius or two, all on one joint.
 void add_limb(rig::Character& body, const Capsule& limb, int joint) {
   constexpr int k_around = 24, k_cap = 8, k_side = 12;
   rig::Mesh& mesh = body.mesh;
   const Vec3 along = (limb.b - limb.a).normalized();
   const Vec3 across = along.unitOrthogonal(), third = along.cross(across);
+  const double rim = std::asin(cone_sine(limb)), ra = limb.radius_at(0), rb = limb.radius_at(1);
   std::vector<std::pair<double, Vec3>> rings; // radius, and middle
   for (int k = 1; k <= k_cap; ++k) {
-    const double angle = 0.5 * std::numbers::pi * k / k_cap;
-    rings.emplace_back(limb.radius * std::sin(angle), limb.a - limb.radius * std::cos(angle) * along);
+    const double angle = (0.5 * std::numbers::pi - rim) * k / k_cap; // from the pole
+    rings.emplace_back(ra * std::sin(angle), limb.a - ra * std::cos(angle) * along);
   }
-  for (int k = 1; k < k_side; ++k) rings.emplace_back(limb.radius, limb.a + (limb.b - limb.a) * k / k_side);
+  for (int k = 1; k < k_side; ++k) {
+    const double t = static_cast<double>(k) / k_side, radius = limb.radius_at(t);
+    rings.emplace_back(radius * std::cos(rim), limb.a + t * (limb.b - limb.a) - radius * std::sin(rim) * along);
+  }
   for (int k = k_cap; k >= 1; --k) {
-    const double angle = 0.5 * std::numbers::pi * k / k_cap;
-    rings.emplace_back(limb.radius * std::sin(angle), limb.b + limb.radius * std::cos(angle) * along);
+    const double angle = (0.5 * std::numbers::pi + rim) * k / k_cap;
+    rings.emplace_back(rb * std::sin(angle), limb.b + rb * std::cos(angle) * along);
   }
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
-  mesh.positions.push_back((limb.a - limb.radius * along).cast<float>());
+  mesh.positions.push_back((limb.a - ra * along).cast<float>());
   for (const auto& [radius, middle] : rings)
     for (int k = 0; k < k_around; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / k_around;
       mesh.positions.push_back(
           Vec3(middle + radius * (std::cos(angle) * across + std::sin(angle) * third)).cast<float>());
     }
-  mesh.positions.push_back((limb.b + limb.radius * along).cast<float>());
+  mesh.positions.push_back((limb.b + rb * along).cast<float>());
   const auto last = static_cast<std::uint32_t>(mesh.positions.size() - 1);
   const auto at = [&](std::size_t ring, int k) {
     return first + 1 + static_cast<std::uint32_t>(ring) * k_around + static_cast<std::uint32_t>(k % k_around);
@@ -136,6 +140,25 @@ TEST(Fit, RecoversACapsule) {
   EXPECT_LT(error.under.bound, 4e-3);
   EXPECT_LT(error.over.bound, 4e-3);
   EXPECT_LE(error.under.max, error.under.bound);
+}
+
+TEST(Fit, RecoversACone) {
+  const Capsule cone{{0.1, 0.4, 0.0}, {0.1, 0.9, 0.05}, 0.09, -0.05};
+  const rig::Character body = body_of({{"Limb", -1, {0.1, 0.4, 0}}}, {{cone, 0}});
+  FitOptions options = quick(1);
+  options.tapered = true;
+  const FitResult result = fit_proxies(body, rest_only(body), options);
+  ASSERT_EQ(result.proxies.size(), 1u);
+  const std::vector<Transform> pose = rig::rest_model(body.skeleton);
+  const Proxy& proxy = result.proxies[0];
+  const bool upright = proxy.taper < 0.0; // a below b
+  EXPECT_LT(((upright ? proxy.a : proxy.b).place(pose) - cone.a).norm(), 1e-3);
+  EXPECT_LT(((upright ? proxy.b : proxy.a).place(pose) - cone.b).norm(), 1e-3);
+  EXPECT_NEAR(std::abs(proxy.taper), 0.05, 1e-3);
+  EXPECT_NEAR(std::max(proxy.radius, proxy.radius + proxy.taper), 0.09, 1e-3); // chords lie within
+  const FitError error = measure_fit(body, rest_only(body), result.proxies, FitRegion::garment, 2000);
+  EXPECT_LT(error.under.p95, 5e-4);
+  EXPECT_LT(error.over.p95, 1e-3);
 }
 
 TEST(Fit, MeasuresAShiftOnBothSides) {
@@ -268,7 +291,10 @@ TEST(Fit, DerivativesAreThoseOfTheCost) {
       double there[2];
       for (const int side : {0, 1}) {
         std::vector<fit::Unit> moved = units;
-        double& parameter = k < 3 ? moved[u].a[k] : k < 6 ? moved[u].b[k - 3] : k == 6 ? moved[u].radius_a : moved[u].radius_b;
+        double& parameter = k < 3    ? moved[u].a[k]
+                            : k < 6  ? moved[u].b[k - 3]
+                            : k == 6 ? moved[u].radius_a
+                                     : moved[u].radius_b;
         parameter += side ? k_step : -k_step;
         if (moved[u].kind == fit::UnitKind::middle) moved[u].a.x() = moved[u].b.x() = 0.0;
         if (moved[u].kind == fit::UnitKind::across) moved[u].b = fit::mirrored(moved[u].a);

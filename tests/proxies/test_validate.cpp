@@ -57,6 +57,20 @@ TEST(Validate, ABodyMadeFromItsProxyHasNoErrorWithinTheBound) {
   EXPECT_THAT(errors.inside, ::testing::IsEmpty());
 }
 
+TEST(Validate, ABodyMadeFromAConeHasNoErrorWithinTheBound) {
+  const Capsule cone{{0, 1.0, 0}, {0, 1.4, 0}, 0.12, -0.07};
+  CapsuleBody shape;
+  shape.add(cone, 96, 24, 20);
+  const FrameErrors errors = measure(shape, {cone});
+  EXPECT_LE(errors.under.value, 1e-7);
+  EXPECT_LE(errors.under.bound, 2e-4);
+  EXPECT_LE(errors.over.value, k_chord);
+  EXPECT_THAT(errors.collisions, ::testing::ElementsAre(0));
+  // As a capsule of one radius it would stick out by the taper at the thin end.
+  const FrameErrors plain = measure(shape, {Capsule{cone.a, cone.b, cone.radius}});
+  EXPECT_NEAR(plain.over.value, 0.07, 2e-3);
+}
+
 TEST(Validate, AProxyMovedByTenMillimetresShowsOnBothSides) {
   const Vec3 move(0.010, 0, 0);
   const CapsuleBody shape = trunk_body();

@@ -1,7 +1,7 @@
 // A body whose shape is known: a capsule as a closed mesh of triangles, its vertices on the capsule.
 #pragma once
 
-#include "proxies/shapes.h"
+#include "proxies/signed_distance.h"
 #include "rig/mesh.h"
 
 #include <cmath>
@@ -25,14 +25,19 @@ struct CapsuleBody {
         positions.push_back(p.cast<float>());
       }
     };
-    const auto latitude = [&](int band) { return 0.5 * std::numbers::pi * band / bands; };
-    positions.push_back((capsule.a - capsule.radius * Vec3::UnitY()).cast<float>());
+    const double sine = proxies::cone_sine(capsule), rim = std::asin(sine), ra = capsule.radius_at(0),
+                 rb = capsule.radius_at(1);
+    const auto latitude = [&](double from, int band) { return from + (0.5 * std::numbers::pi - from) * band / bands; };
+    positions.push_back((capsule.a - ra * Vec3::UnitY()).cast<float>());
     for (int band = bands - 1; band >= 0; --band)
-      put(-capsule.radius * std::sin(latitude(band)), capsule.radius * std::cos(latitude(band)));
-    for (int k = 1; k < along; ++k) put(length * k / along, capsule.radius);
+      put(-ra * std::sin(latitude(rim, band)), ra * std::cos(latitude(rim, band)));
+    for (int k = 1; k < along; ++k) {
+      const double share = static_cast<double>(k) / along; // from rim to rim
+      put(length * share - capsule.radius_at(share) * sine, capsule.radius_at(share) * std::cos(rim));
+    }
     for (int band = 0; band < bands; ++band)
-      put(length + capsule.radius * std::sin(latitude(band)), capsule.radius * std::cos(latitude(band)));
-    positions.push_back((capsule.b + capsule.radius * Vec3::UnitY()).cast<float>());
+      put(length + rb * std::sin(latitude(-rim, band)), rb * std::cos(latitude(-rim, band)));
+    positions.push_back((capsule.b + rb * Vec3::UnitY()).cast<float>());
 
     const int rings = 2 * bands + along - 1;
     const auto at = [&](int ring, int k) { return first + 1 + static_cast<std::uint32_t>(ring * around + k % around); };

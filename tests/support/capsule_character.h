@@ -13,7 +13,8 @@ namespace tutu::test {
 
 /// Writes `body` as a Collada character: all of it on the joint "Hips", which has a child "LeftArm" that carries no
 /// skin. Its joint sphere is a grain inside the first capsule, at `inside`.
-inline void write_capsule_character(const std::filesystem::path& file, const CapsuleBody& body, const Vec3& inside) {
+inline void write_capsule_character(const std::filesystem::path& file, const CapsuleBody& body, const Vec3& inside,
+                                    double grain_radius = 0.01) {
   const auto on_hips = [](const CapsuleBody& shape, rig::Mesh& mesh, rig::Skin& skin) {
     mesh.positions = shape.positions;
     mesh.triangles = shape.triangles;
@@ -31,7 +32,7 @@ inline void write_capsule_character(const std::filesystem::path& file, const Cap
   character.skeleton.rest_local = {Transform{}, Transform{Quat::Identity(), Vec3(0.3, 0, 0)}};
   on_hips(body, character.surface, character.surface_skin);
   CapsuleBody grain;
-  grain.add({inside, inside + 0.01 * Vec3::UnitY(), 0.01}, 6, 2, 1);
+  grain.add({inside, inside + 0.01 * Vec3::UnitY(), grain_radius}, 6, 2, 1);
   on_hips(grain, character.spheres, character.sphere_skin);
   write_file(file, rig::collada_of(character));
 }
@@ -41,10 +42,10 @@ inline std::string proxies_json(const std::vector<proxies::Capsule>& capsules) {
   std::string text;
   for (std::size_t k = 0; k < capsules.size(); ++k) {
     const proxies::Capsule& c = capsules[k];
-    text +=
-        fmt::format("{}{{\"name\": \"p{}\", \"capsule\": {{\"joint\": \"Hips\", \"a\": [{}, {}, {}], \"b\": [{}, {}, "
-                    "{}], \"radius\": {}}}}}",
-                    k == 0 ? "" : ", ", k, c.a.x(), c.a.y(), c.a.z(), c.b.x(), c.b.y(), c.b.z(), c.radius);
+    text += fmt::format(
+        "{}{{\"name\": \"p{}\", \"capsule\": {{\"joint\": \"Hips\", \"a\": [{}, {}, {}], \"b\": [{}, {}, "
+        "{}], \"radius\": [{}, {}]}}}}",
+        k == 0 ? "" : ", ", k, c.a.x(), c.a.y(), c.a.z(), c.b.x(), c.b.y(), c.b.z(), c.radius_at(0), c.radius_at(1));
   }
   return "{\"proxies\": [" + text + "]}";
 }
