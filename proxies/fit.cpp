@@ -128,6 +128,7 @@ FitResult fit_proxies(const rig::Character& character, const std::vector<std::ve
   FitResult result;
   Cost cost;
   cost.under = options.under_weight;
+  cost.guard.weight *= std::max(1.0, options.under_weight); // the dearer what is missed, the more shapes reach out for it
   Search search(points, motion, guard, cost, [&] { return share.keep_going(); });
   search.start(first_layout(points.skin, motion, character.skeleton, options.tapered));
   search.refine(k_first_steps);
