@@ -1,0 +1,49 @@
+// One way to simulate a scene: what a chart has a point for, and how it changes the scene.
+#pragma once
+
+#include "src/scene/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace tutu::app {
+
+/// Setting::proxies when it is not a file.
+inline constexpr const char *k_own_proxies = "scene", *k_no_proxies = "none";
+
+struct Setting {
+  std::string name; ///< for people ("default"); may be empty, and is no part of what the setting is
+  cloth::SolverKind solver = cloth::SolverKind::xpbd;
+  proxies::Backend backend = proxies::Backend::hybrid;
+  int substeps = 10;             ///< a frame
+  bool adaptive_substeps = true; ///< and more where something moves too fast
+  int frames_per_second = 60;
+  double resolution = 1.0;             ///< times the scene's own cells along each side of its garments
+  std::string proxies = k_own_proxies; ///< k_own_proxies, k_no_proxies, or a proxies file
+  cloth::ContactFeatures features = cloth::ContactFeatures::automatic;
+  bool swept = true;
+  int passes = 1;
+  bool double_precision = false;
+  bool self_collision = false;
+  int threads = 1;
+
+  bool operator==(const Setting&) const = default;
+};
+
+/// The scene's own setting, named "default".
+Setting setting_of(const SceneDescription& description);
+
+/// Its values in words, in the order of setting_columns(): the columns of results, and what makes two settings one.
+std::vector<std::string> setting_values(const Setting& setting);
+const std::vector<std::string>& setting_columns();
+
+/// "xpbd, 12 substeps, 30 proxies' file ..." in as few words as tell it from `other`; "" when nothing does.
+std::string difference(const Setting& setting, const Setting& other);
+
+/// The options of `tutu cell` that give this setting, wherever the scene has something else: "--solver mass_spring".
+std::vector<std::string> setting_options(const Setting& setting, const Setting& of_scene);
+
+/// The scene under that setting. Throws InputError as read_proxies and put_on.
+Scene with_setting(const Scene& scene, const Setting& setting);
+
+} // namespace tutu::app
