@@ -7,7 +7,7 @@
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <set>
+#include <map>
 #include <stdexcept>
 #include <sys/file.h>
 #include <unistd.h>
@@ -110,7 +110,7 @@ Results read_results(const std::filesystem::path& file) {
   Results results;
   if (!std::filesystem::exists(file)) return results;
   const std::string text = read_file(file);
-  std::set<std::string> keys;
+  std::map<std::string, std::size_t> places; // of the keys, in the rows
   int number = 0;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = text.find('\n', begin);
@@ -130,7 +130,10 @@ Results read_results(const std::filesystem::path& file) {
           number, cut ? "a row cut off in the middle" : std::to_string(found) + " values", row_columns().size()));
       continue;
     }
-    if (keys.insert(values->front()).second) results.rows.emplace_back(*values);
+    Row row(*values);
+    const auto [known, is_new] = places.try_emplace(values->front(), results.rows.size());
+    if (is_new) results.rows.push_back(std::move(row));
+    else if (Row& old = results.rows[known->second]; old.text("outcome") == k_crashed) old = std::move(row);
   }
   return results;
 }

@@ -15,7 +15,7 @@ namespace tutu::app {
 void add_row(const std::filesystem::path& file, const Row& row);
 
 struct Results {
-  std::vector<Row> rows;          ///< one a key, the first; in the order of the file
+  std::vector<Row> rows;          ///< one a key: the first that did not crash, or the first
   std::vector<std::string> notes; ///< what was dropped, one sentence each, with its line
 };
 

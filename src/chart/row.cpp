@@ -29,27 +29,29 @@ std::size_t index_of(const std::string& column) {
   return static_cast<std::size_t>(found - columns.begin());
 }
 
-void set_task(Row& row, const std::string& scene_name, const CellTask& task, const std::string& key,
-              const Protocol& protocol) {
-  row.set("key", key);
-  row.set("scene", scene_name);
+Row row_for(const CellTask& task) {
+  Row row;
+  row.set("key", cell_key(task));
+  row.set("reference", task.reference);
+  row.set("scene", task.scene);
   row.set("name", task.setting.name);
-  const std::vector<std::string> values = setting_values(task.setting);
+  const SettingValues values = setting_values(task.setting);
   for (std::size_t k = 0; k < values.size(); ++k) row.set(setting_columns()[k], values[k]);
   row.set("seed", std::to_string(task.seed));
-  row.set("frames", std::to_string(protocol.frames));
-  row.set("settle", std::to_string(protocol.settle));
-  row.set("held", std::to_string(protocol.held));
-  row.set("every", std::to_string(protocol.every));
+  row.set("frames", std::to_string(task.protocol.frames));
+  row.set("settle", std::to_string(task.protocol.settle));
+  row.set("held", std::to_string(task.protocol.held));
+  row.set("every", std::to_string(task.protocol.every));
   row.set("machine", machine_name());
   row.set("tutu", TUTU_VERSION);
+  return row;
 }
 
 } // namespace
 
 const std::vector<std::string>& row_columns() {
   static const std::vector<std::string> columns = [] {
-    std::vector<std::string> names = {"key", "scene", "name"};
+    std::vector<std::string> names = {"key", "reference", "scene", "name"};
     names.insert(names.end(), setting_columns().begin(), setting_columns().end());
     for (const char* name : {"seed", "frames", "settle", "held", "every", "particles", "colliders", "machine", "tutu",
                              "outcome", "reason"})
@@ -81,9 +83,9 @@ std::optional<double> Row::number(const std::string& column) const {
 void Row::set(const std::string& column, std::string text) { values_.at(index_of(column)) = std::move(text); }
 void Row::set(const std::string& column, double number) { set(column, fmt::format("{:.6g}", number)); }
 
-std::string cell_key(const std::string& reference_fingerprint, const CellTask& task) {
+std::string cell_key(const CellTask& task) {
   ContentHash hash;
-  hash.add(reference_fingerprint);
+  hash.add(task.reference);
   for (const std::string& value : setting_values(task.setting)) hash.add(value);
   const std::string& proxies = task.setting.proxies;
   if (proxies != k_own_proxies && proxies != k_no_proxies) hash.add(read_file(proxies));
@@ -91,10 +93,8 @@ std::string cell_key(const std::string& reference_fingerprint, const CellTask& t
   return hash.text();
 }
 
-Row row_of(const Scene& scene, const CellTask& task, const std::string& key, const Protocol& protocol,
-           const CellRun& run, const RunErrors& errors) {
-  Row row;
-  set_task(row, scene.name(), task, key, protocol);
+Row row_of(const Scene& scene, const CellTask& task, const CellRun& run, const RunErrors& errors) {
+  Row row = row_for(task);
   int particles = 0;
   for (const cloth::Garment& garment : scene.garments) particles += garment.particle_count();
   row.set("particles", std::to_string(particles));
@@ -145,11 +145,9 @@ Row row_of(const Scene& scene, const CellTask& task, const std::string& key, con
   return row;
 }
 
-Row row_of_crash(const std::string& scene_name, const CellTask& task, const std::string& key, const Protocol& protocol,
-                 const std::string& reason) {
-  Row row;
-  set_task(row, scene_name, task, key, protocol);
-  row.set("outcome", "crashed");
+Row row_of_crash(const CellTask& task, const std::string& reason) {
+  Row row = row_for(task);
+  row.set("outcome", k_crashed);
   row.set("reason", reason);
   return row;
 }

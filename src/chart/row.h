@@ -31,20 +31,23 @@ private:
 
 /// What a row is about.
 struct CellTask {
+  std::string scene;     ///< its name
+  std::string reference; ///< fingerprint of what it is measured against
+  Protocol protocol;     ///< in frames of the scene's own rate
   Setting setting;
   std::uint64_t seed = 0;
 };
 
 /// 16 hexadecimal digits of the reference, the setting (with the content of its proxies file) and the seed.
-std::string cell_key(const std::string& reference_fingerprint, const CellTask& task);
+std::string cell_key(const CellTask& task);
 
-/// The columns "ok", "diverged", "recovered" or "crashed" stand in `outcome`; anything but "ok" has failed.
-Row row_of(const Scene& scene, const CellTask& task, const std::string& key, const Protocol& protocol,
-           const CellRun& run, const RunErrors& errors);
+/// `outcome` is "ok", or "diverged" (`reason`: where), or "recovered" (frames were taken again), or that of
+/// row_of_crash. Anything but "ok" has failed. `scene` is as the setting has it.
+Row row_of(const Scene& scene, const CellTask& task, const CellRun& run, const RunErrors& errors);
 
-/// A run whose process ended without a row: killed, or crashed.
-Row row_of_crash(const std::string& scene_name, const CellTask& task, const std::string& key, const Protocol& protocol,
-                 const std::string& reason);
+/// "crashed": a run whose process ended without a row.
+inline constexpr const char* k_crashed = "crashed";
+Row row_of_crash(const CellTask& task, const std::string& reason);
 
 /// "AMD EPYC 7B13, 2 threads".
 std::string machine_name();

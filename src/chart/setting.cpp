@@ -75,16 +75,14 @@ std::vector<std::string> setting_values(const Setting& s) {
           std::to_string(s.threads)};
 }
 
-std::string difference(const Setting& setting, const Setting& other) {
-  const std::vector<std::string> values = setting_values(setting), others = setting_values(other);
+std::string difference(const SettingValues& values, const SettingValues& others) {
   std::string text;
   for (std::size_t k = 0; k < values.size(); ++k)
     if (values[k] != others[k]) text += (text.empty() ? "" : ", ") + in_words(setting_columns()[k], values[k]);
   return text;
 }
 
-std::vector<std::string> setting_options(const Setting& setting, const Setting& of_scene) {
-  const std::vector<std::string> values = setting_values(setting), own = setting_values(of_scene);
+std::vector<std::string> setting_options(const SettingValues& values, const SettingValues& own) {
   std::vector<std::string> options;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (values[k] == own[k]) continue;

@@ -37,11 +37,13 @@ Setting setting_of(const SceneDescription& description);
 std::vector<std::string> setting_values(const Setting& setting);
 const std::vector<std::string>& setting_columns();
 
-/// "xpbd, 12 substeps, 30 proxies' file ..." in as few words as tell it from `other`; "" when nothing does.
-std::string difference(const Setting& setting, const Setting& other);
+using SettingValues = std::vector<std::string>;
 
-/// The options of `tutu cell` that give this setting, wherever the scene has something else: "--solver mass_spring".
-std::vector<std::string> setting_options(const Setting& setting, const Setting& of_scene);
+/// What tells one setting from another, in words: "mass_spring, 5 substeps"; "" when nothing does.
+std::string difference(const SettingValues& values, const SettingValues& others);
+
+/// The options of `tutu cell` that give this setting where the scene's own is another: "--solver", "mass_spring".
+std::vector<std::string> setting_options(const SettingValues& values, const SettingValues& of_scene);
 
 /// The scene under that setting. Throws InputError as read_proxies and put_on.
 Scene with_setting(const Scene& scene, const Setting& setting);

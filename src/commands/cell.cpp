@@ -49,14 +49,13 @@ int run(const Options& options) {
   catch_interrupt();
   const Scene base = options.chart.load();
   const ReferencePlan plan = options.chart.plan(base);
-  const CellTask task{setting_for(options, base.description), options.seed};
-  const Scene scene = with_setting(base, task.setting);
+  const Setting setting = setting_for(options, base.description);
+  const Scene scene = with_setting(base, setting);
   const Protocol protocol =
       at_rate(plan.protocol, base.description.frames_per_second, scene.description.frames_per_second);
   const auto reference = options.chart.obtain(base, 1);
   if (!reference) return k_not_met;
 
-  const std::string key = cell_key(reference->fingerprint, task);
   CellStart start{{}, options.seed};
   for (std::size_t g = 0; g < scene.garments.size(); ++g)
     start.positions.push_back(positions_on(base.garments[g], reference->start[g], scene.garments[g]));
@@ -66,8 +65,9 @@ int run(const Options& options) {
     return k_not_met;
   }
   const Scene truth = with_setting(base, reference_setting(base, plan, reference->substeps));
-  const Row row = row_of(scene, task, key, plan.protocol, run,
-                         errors_against(truth.garments, reference->recording, scene.garments, run.recording));
+  const CellTask task{base.name(), reference->fingerprint, plan.protocol, setting, options.seed};
+  const Row row =
+      row_of(scene, task, run, errors_against(truth.garments, reference->recording, scene.garments, run.recording));
   if (options.out.empty()) print_row(row);
   else add_row(options.out, row);
   return run.failure.empty() ? k_ok : k_not_met;
