@@ -98,7 +98,7 @@ Setting report_setting(const SceneDescription& scene, const std::string& proxies
   setting.name = "report";
   setting.solver = cloth::SolverKind::mass_spring;
   setting.substeps = 5;
-  setting.frames_per_second = 40;
+  setting.frames_per_second = k_report_rate;
   setting.adaptive_substeps = false;
   setting.proxies = proxies;
   return setting;
@@ -140,8 +140,9 @@ std::vector<Setting> builtin_settings(const SceneDescription& scene, bool quick)
   vary([](Setting& s) { s.passes = 2; });
   vary([](Setting& s) { s.proxies = k_no_proxies; });
   if (scene.garments.size() > 1) vary([](Setting& s) { s.threads = 2; });
+  for (const int count : quick ? std::vector{18} : std::vector{12, 18, 24, 48})
+    vary([&](Setting& s) { s.proxies = fitted_proxies(count); });
   if (!quick) {
-    for (const int count : {12, 18, 24, 48}) vary([&](Setting& s) { s.proxies = fitted_proxies(count); });
     vary([](Setting& s) { s.self_collision = true; });
     vary([](Setting& s) { s.double_precision = true; });
     for (const double resolution : {0.75, 1.5, 3.0}) vary([&](Setting& s) { s.resolution = resolution; });

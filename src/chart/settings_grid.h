@@ -17,7 +17,9 @@ namespace tutu::app {
 /// twice. Throws InputError with file, place, found and expected, on an empty grid too.
 std::vector<Setting> read_settings(const std::filesystem::path& file, const SceneDescription& scene);
 
-/// The setting of the report: mass_spring, 5 substeps of 5 ms (so 40 frames a second), `proxies` placed by hand.
+inline constexpr int k_report_rate = 40; ///< frames a second: of 5 substeps of 5 ms each
+
+/// The setting of the report: mass_spring, 5 substeps of 5 ms, `proxies` placed by hand.
 Setting report_setting(const SceneDescription& scene, const std::string& proxies);
 
 /// What is built in: solvers, substeps, backends, features, grid sizes and proxies around the scene's own setting,

@@ -2,6 +2,7 @@
 
 #include "rig/error.h"
 #include "src/chart/reference_file.h"
+#include "src/chart/settings_grid.h"
 #include "src/commands/scene_options.h"
 #include "src/interrupt.h"
 #include "src/scene/posed_body.h"
@@ -10,12 +11,19 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
+#include <numeric>
 
 namespace tutu::app {
 namespace {
 
-/// A second of motion: as long as trajectories are compared.
-constexpr Protocol k_quick{.frames = 60, .settle = 30, .held = 20, .every = 6};
+/// Whole frames at the scene's rate and at the report's, that all settings are compared at the same moments.
+Protocol usual_protocol(int rate, int frames_of_motion, bool quick) {
+  const int unit = rate / std::gcd(rate, k_report_rate); // frames
+  const auto whole = [&](double seconds) { return unit * std::max(1, static_cast<int>(seconds * rate / unit + 1e-9)); };
+  if (quick) return {std::min(whole(k_trajectory_seconds), frames_of_motion), whole(0.5), whole(0.35), 2 * unit};
+  return {std::max(unit, frames_of_motion / unit * unit), whole(1.0), whole(1.0), unit};
+}
+
 const std::vector<int> k_quick_substeps = {12, 24, 48};
 
 } // namespace
@@ -57,12 +65,8 @@ Scene ChartOptions::load() const {
 
 ReferencePlan ChartOptions::plan(const Scene& loaded) const {
   ReferencePlan plan;
-  if (quick) {
-    plan.protocol = k_quick;
-    plan.substeps = k_quick_substeps;
-  } else {
-    plan.protocol.frames = frames_of(loaded);
-  }
+  if (quick) plan.substeps = k_quick_substeps;
+  plan.protocol = usual_protocol(loaded.description.frames_per_second, frames_of(loaded), quick);
   Protocol& p = plan.protocol;
   p = {frames.value_or(p.frames), settle.value_or(p.settle), held.value_or(p.held), every.value_or(p.every)};
   if (!reference_substeps.empty()) plan.substeps = reference_substeps;
