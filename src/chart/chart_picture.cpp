@@ -69,6 +69,7 @@ private:
     double x, y, width, height;
   };
   bool is_free(const Box& a) const {
+    if (a.y < 0.5 * a.height || a.y > k_plot_height - 0.5 * a.height) return false;
     return std::none_of(boxes_.begin(), boxes_.end(), [&](const Box& b) {
       return a.x < b.x + b.width && b.x < a.x + a.width && std::abs(a.y - b.y) < 0.5 * (a.height + b.height);
     });
@@ -109,7 +110,7 @@ void write_chart_picture(const std::vector<ChartPoint>& points, const ErrorAxis&
           fmt::format("{} {} {}\n", p.cost() > 0.0 ? at.x : x.high, top / 1.15, data_text(p.name + ": " + p.reason));
   }
   for (const int i : front) step += fmt::format("{} {}\n", place(points[i]).x, place(points[i]).y);
-  const double left = x.low / 1.5, right = x.high * 3.0, bottom = y.low / 1.5;
+  const double left = x.low / 1.5, right = x.high * 3.0, bottom = y.low / 2.0;
   const auto pixels = [&](const Drawn& at) {
     return Drawn{k_plot_width * std::log(at.x / left) / std::log(right / left),
                  k_plot_height * std::log(at.y / bottom) / std::log(top / bottom)};
@@ -121,9 +122,10 @@ void write_chart_picture(const std::vector<ChartPoint>& points, const ErrorAxis&
     const bool on_front = std::find(front.begin(), front.end(), static_cast<int>(i)) != front.end();
     if (!points[i].good() || !(points[i].named || on_front)) continue;
     const Drawn text = places.place(pixels(place(points[i])), points[i].name.size());
-    labels += fmt::format("{} {} {}\n", left * std::pow(right / left, text.x / k_plot_width),
-                          bottom * std::pow(top / bottom, text.y / k_plot_height), data_text(points[i].name));
-    if (points[i].named) rings += fmt::format("{} {}\n", place(points[i]).x, place(points[i]).y);
+    const Drawn at = place(points[i]), to = {left * std::pow(right / left, text.x / k_plot_width),
+                                             bottom * std::pow(top / bottom, text.y / k_plot_height)};
+    labels += fmt::format("{} {} {} {} {}\n", to.x, to.y, data_text(points[i].name), at.x - to.x, at.y - to.y);
+    if (points[i].named) rings += fmt::format("{} {}\n", at.x, at.y);
   }
 
   std::string script = fmt::format(
@@ -153,6 +155,7 @@ void write_chart_picture(const std::vector<ChartPoint>& points, const ErrorAxis&
   }
   if (!labels.empty()) {
     script += block("labels", labels);
+    add("$labels using 1:2:4:5 with vectors nohead lc rgb '#bbbbbb' notitle");
     add("$labels using 1:2:3 with labels left noenhanced notitle");
   }
   draw_with_gnuplot(script + plot + "\n", k_width, k_height, file);

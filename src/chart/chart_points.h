@@ -40,7 +40,7 @@ std::vector<ChartPoint> points_of(const std::vector<Row>& rows, const SettingVal
 std::vector<int> front_of(const std::vector<ChartPoint>& points, const ErrorAxis& axis);
 
 /// Whether the point named "default" is on each front, and if not what is better; and whether any point is better in
-/// all errors at once. Some lines.
+/// time and all errors at once. Some lines.
 std::string default_verdict(const std::vector<ChartPoint>& points);
 
 /// A table for a terminal, by rising cost.
