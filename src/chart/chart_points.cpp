@@ -11,12 +11,6 @@
 namespace tutu::app {
 namespace {
 
-SettingValues values_of(const Row& row) {
-  SettingValues values;
-  for (const std::string& column : setting_columns()) values.push_back(row.text(column));
-  return values;
-}
-
 /// Why a run failed, in a few words; "" when it did not.
 std::string reason_of(const Row& row) {
   const std::string& outcome = row.text("outcome");
@@ -61,7 +55,7 @@ double median(std::vector<double> values) {
   return 0.5 * (below + values[half]);
 }
 
-SettingValues ChartPoint::values() const { return values_of(rows.front()); }
+SettingValues ChartPoint::values() const { return rows.front().setting(); }
 
 std::optional<double> ChartPoint::figure(const std::string& column) const {
   std::vector<double> values;
@@ -75,7 +69,7 @@ std::vector<ChartPoint> points_of(const std::vector<Row>& rows, const SettingVal
   std::vector<ChartPoint> points;
   std::map<SettingValues, std::size_t> places;
   for (const Row& row : rows) {
-    const auto [place, is_new] = places.try_emplace(values_of(row), points.size());
+    const auto [place, is_new] = places.try_emplace(row.setting(), points.size());
     if (is_new) points.emplace_back();
     ChartPoint& point = points[place->second];
     if (const std::string reason = reason_of(row); !reason.empty()) {

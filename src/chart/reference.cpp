@@ -7,6 +7,7 @@
 #include "src/progress.h"
 #include "src/workers.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdlib>
 #include <fmt/format.h>

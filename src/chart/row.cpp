@@ -80,6 +80,12 @@ std::optional<double> Row::number(const std::string& column) const {
   return number;
 }
 
+SettingValues Row::setting() const {
+  SettingValues values;
+  for (const std::string& column : setting_columns()) values.push_back(text(column));
+  return values;
+}
+
 void Row::set(const std::string& column, std::string text) { values_.at(index_of(column)) = std::move(text); }
 void Row::set(const std::string& column, double number) { set(column, fmt::format("{:.6g}", number)); }
 

@@ -22,6 +22,7 @@ public:
   const std::vector<std::string>& values() const { return values_; }
   const std::string& text(const std::string& column) const;      ///< std::out_of_range for a column that is not there
   std::optional<double> number(const std::string& column) const; ///< nothing where there is no finite number
+  SettingValues setting() const;                                 ///< setting_values of the setting it is about
   void set(const std::string& column, std::string text);
   void set(const std::string& column, double number);
 

@@ -3,6 +3,7 @@
 #include "proxies/proxy_file.h"
 #include "src/scene/worn_garment.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 
 namespace tutu::app {

@@ -12,7 +12,9 @@
 #include "src/interrupt.h"
 #include "src/progress.h"
 
+#include <algorithm>
 #include <fmt/format.h>
+#include <map>
 #include <set>
 #include <thread>
 
@@ -116,6 +118,20 @@ bool run_missing(const Options& options, const std::vector<CellTask>& tasks, con
   return !interrupted();
 }
 
+/// Rows measured against this reference; without those of a proxies file that has changed since.
+std::vector<Row> rows_to_draw(const fs::path& file, const std::vector<CellTask>& tasks) {
+  std::map<std::pair<SettingValues, std::string>, std::string> keys; // by setting and seed
+  for (const CellTask& task : tasks)
+    keys.emplace(std::pair(setting_values(task.setting), std::to_string(task.seed)), cell_key(task));
+  std::vector<Row> rows;
+  for (const Row& row : read_results(file).rows) {
+    const auto now = keys.find({row.setting(), row.text("seed")});
+    const bool is_stale = now != keys.end() && now->second != row.text("key");
+    if (row.text("reference") == tasks.front().reference && !is_stale) rows.push_back(row);
+  }
+  return rows;
+}
+
 int run(const Options& options) {
   const fs::path folder = options.out;
   require_chart(folder / "chart.svg");
@@ -130,7 +146,7 @@ int run(const Options& options) {
     (void)at_rate(plan.protocol, description.frames_per_second, setting.frames_per_second);
   read_results(folder / "results.csv"); // a file of something else is told before long work
   make_fitted(settings, scene, folder, options.jobs);
-  const auto reference = options.chart.obtain(scene, options.jobs);
+  const auto reference = interrupted() ? std::nullopt : options.chart.obtain(scene, options.jobs);
   if (!reference) return k_not_met;
   fmt::print("{}", convergence_text(*reference));
 
@@ -140,9 +156,7 @@ int run(const Options& options) {
       tasks_of(settings, repeats, {scene.name(), reference->fingerprint, plan.protocol, {}, 0});
   const bool whole = run_missing(options, tasks, of_scene);
 
-  std::vector<Row> rows;
-  for (const Row& row : read_results(folder / "results.csv").rows)
-    if (row.text("reference") == reference->fingerprint) rows.push_back(row);
+  const std::vector<Row> rows = rows_to_draw(folder / "results.csv", tasks);
   if (!whole) {
     fmt::print(stderr, "tutu: interrupted with {} of {} runs done; the same command goes on from there\n", rows.size(),
                tasks.size());
