@@ -3,7 +3,6 @@
 #include "rig/error.h"
 #include "src/chart/content_hash.h"
 #include "src/chart/reference_file.h"
-#include "src/chart/same_cloth.h"
 #include "src/progress.h"
 #include "src/workers.h"
 
@@ -86,9 +85,7 @@ private:
     if (!go_on()) return;
     const int substeps = plan_->substeps[k];
     const Scene scene = with_setting(*scene_, reference_setting(*scene_, *plan_, substeps));
-    CellStart cell{{}, 0};
-    for (std::size_t g = 0; g < start.size(); ++g)
-      cell.positions.push_back(positions_on(scene_->garments[g], start[g], scene.garments[g]));
+    const CellStart cell{start_at_resolution(*scene_, start, plan_->resolution), 0};
     CellRun run = run_cell(scene, cell, plan_->protocol, false, go_on);
     if (run.stopped) return;
     const std::string trouble = run.recoveries > 0 ? fmt::format("{} frames diverged", run.recoveries) : run.failure;

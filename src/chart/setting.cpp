@@ -1,6 +1,8 @@
 #include "src/chart/setting.h"
 
 #include "proxies/proxy_file.h"
+#include "src/chart/same_cloth.h"
+#include "src/scene/session.h"
 #include "src/scene/worn_garment.h"
 
 #include <algorithm>
@@ -8,6 +10,8 @@
 
 namespace tutu::app {
 namespace {
+
+constexpr double k_easing_drag = 50.0; // 1/s: cloth sinks at 0.2 m/s and swings no more
 
 std::string on_off(bool on) { return on ? "on" : "off"; }
 
@@ -125,6 +129,25 @@ Scene with_setting(const Scene& scene, const Setting& setting) {
     result.skin_pins[g] = std::move(worn.skin_pins);
   }
   return result;
+}
+
+std::vector<std::vector<Vec3>> start_at_resolution(const Scene& scene, const std::vector<std::vector<Vec3>>& start,
+                                                   double resolution) {
+  if (resolution == 1.0) return start;
+  Setting setting = setting_of(scene.description);
+  setting.resolution = resolution;
+  const Scene other = with_setting(scene, setting);
+  std::vector<std::vector<Vec3>> positions;
+  for (std::size_t g = 0; g < start.size(); ++g)
+    positions.push_back(positions_on(scene.garments[g], start[g], other.garments[g]));
+  Session session(other);
+  session.start(positions);
+  const auto pose = other.clip.key(0);
+  for (int f = 0; f < other.description.frames_per_second && !session.failure(); ++f)
+    session.advance_to(pose, k_easing_drag);
+  for (std::size_t g = 0; g < start.size(); ++g)
+    positions[g] = session.garment(static_cast<int>(g)).particles().positions;
+  return positions;
 }
 
 } // namespace tutu::app

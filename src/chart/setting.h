@@ -48,4 +48,10 @@ std::vector<std::string> setting_options(const SettingValues& values, const Sett
 /// The scene under that setting. Throws InputError as read_proxies and put_on.
 Scene with_setting(const Scene& scene, const Setting& setting);
 
+/// A start of the scene's own resolution for one of `resolution` times its cells: carried over, then eased for a second
+/// in the first pose under the scene's own setting and much drag. Coarser cloth cannot lie in the same folds: its edges
+/// begin pressed together, and would spring apart.
+std::vector<std::vector<Vec3>> start_at_resolution(const Scene& scene, const std::vector<std::vector<Vec3>>& start,
+                                                   double resolution);
+
 } // namespace tutu::app

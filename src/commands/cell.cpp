@@ -1,7 +1,6 @@
 // tutu cell: one setting of a scene, one run, one row. What `tutu chart` starts many of.
 #include "rig/error.h"
 #include "src/chart/results_file.h"
-#include "src/chart/same_cloth.h"
 #include "src/commands/chart_options.h"
 #include "src/commands/commands.h"
 #include "src/commands/scene_options.h"
@@ -56,9 +55,7 @@ int run(const Options& options) {
   const auto reference = options.chart.obtain(base, 1);
   if (!reference) return k_not_met;
 
-  CellStart start{{}, options.seed};
-  for (std::size_t g = 0; g < scene.garments.size(); ++g)
-    start.positions.push_back(positions_on(base.garments[g], reference->start[g], scene.garments[g]));
+  const CellStart start{start_at_resolution(base, reference->start, setting.resolution), options.seed};
   const CellRun run = run_cell(scene, start, protocol, true, [] { return !interrupted(); });
   if (run.stopped) {
     fmt::print(stderr, "tutu: interrupted; no row written\n");
