@@ -3,6 +3,7 @@
 #include "rig/file_io.h"
 #include "src/chart/same_cloth.h"
 #include "src/chart/settings_grid.h"
+#include "src/scene/session.h"
 #include "tests/support/paths.h"
 
 #include <gmock/gmock.h>
@@ -110,6 +111,23 @@ TEST(Setting, ASceneOfAnotherResolutionWearsTheSameGarments) {
       EXPECT_EQ(b.pins.size(), static_cast<std::size_t>(b.columns));
     }
   }
+}
+
+TEST(Setting, CoarserClothDoesNotSpringApartAtTheStart) {
+  const Scene scene = load_scene(read_scene(source_file("assets/scenes/dance.json")));
+  bool stale = false;
+  const auto start = saved_drape(scene, &stale);
+  ASSERT_TRUE(start.has_value());
+  Setting setting = setting_of(scene.description);
+  setting.resolution = 0.5;
+  const Scene coarse = with_setting(scene, setting);
+  Session session(coarse);
+  session.start(start_at_resolution(scene, *start, setting.resolution));
+  for (int f = 0; f < 6; ++f) session.advance();
+  double fastest = 0.0;
+  for (const Vec3& v : session.garment(0).particles().velocities) fastest = std::max(fastest, v.norm());
+  EXPECT_LT(fastest, 3.0); // m/s; it was more than 6 where it began pressed together
+  EXPECT_EQ(session.troubles().frames_split, 0);
 }
 
 TEST(SameCloth, PositionsAreCarriedExactlyWhereGridsMeet) {
