@@ -153,4 +153,9 @@ std::vector<std::uint8_t> pinned_flags(const Garment& garment);
 /// Scales (per axis, about the origin) and then moves the shape: how a garment is put on another body.
 GarmentDescription fitted(GarmentDescription description, const Vec3& scale, const Vec3& offset);
 
+/// The same shape of more or fewer particles: `factor` times the cells along each side of a grid or tube, the rings of
+/// a disc. Attachments hold the same part of it. Throws InputError for a mesh, whose particles are its own, unless
+/// factor is 1.
+GarmentDescription resampled(GarmentDescription description, double factor);
+
 } // namespace tutu::cloth

@@ -18,6 +18,8 @@ int main(int argc, char** argv) {
   add_validate(app, status);
   add_mannequin(app, status);
   add_bench(app, status);
+  add_cell(app, status);
+  add_chart(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -12,6 +12,8 @@ inline constexpr int k_bad_input = 2; ///< bad usage or input
 
 /// Each adds one subcommand to `app`; running it sets `status`.
 void add_bench(CLI::App& app, int& status);
+void add_cell(CLI::App& app, int& status);
+void add_chart(CLI::App& app, int& status);
 void add_drape(CLI::App& app, int& status);
 void add_fit(CLI::App& app, int& status);
 void add_inspect(CLI::App& app, int& status);

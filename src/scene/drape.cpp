@@ -97,6 +97,10 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   // Without these the hash stays that of drapes made before there were any.
   if (d.self_collision) add(1.0);
   if (d.backend == proxies::Backend::mesh) add(2.0);
+  if (d.features != cloth::ContactFeatures::automatic) add(3.0, static_cast<double>(d.features));
+  if (!d.swept) add(4.0);
+  if (d.passes != 1) add(5.0, d.passes);
+  if (d.double_precision) add(6.0);
   return cloth::state_hash(numbers);
 }
 

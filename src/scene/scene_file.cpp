@@ -49,14 +49,15 @@ Motion read_motion(const JsonValue& json) {
 
 GarmentEntry read_garment_entry(const JsonValue& json) {
   if (json.is_string()) return {existing_in(json)};
-  if (!json.is_object()) throw json.error("a garment's path, or an object with file, scale and offset");
-  json.only_keys({"file", "scale", "offset"});
+  if (!json.is_object()) throw json.error("a garment's path, or an object with file, scale, offset and resolution");
+  json.only_keys({"file", "scale", "offset", "resolution"});
   GarmentEntry entry{existing_in(json.at("file"))};
   if (const auto scale = json.find("scale")) {
     entry.scale = scale->is_number() ? Vec3(Vec3::Constant(scale->positive())) : scale->vec3();
     if (!(entry.scale.minCoeff() > 0.0)) throw scale->error("factors above 0");
   }
   if (const auto offset = json.find("offset")) entry.offset = offset->vec3();
+  if (const auto resolution = json.find("resolution")) entry.resolution = resolution->number_in(0.01, 100.0);
   return entry;
 }
 
@@ -93,19 +94,25 @@ SceneDescription read_scene(const fs::path& file) {
     }
   }
   if (const auto solver = json.find("solver")) {
-    solver->only_keys({"name", "substeps", "adaptive_substeps", "frames_per_second", "threads"});
+    solver->only_keys(
+        {"name", "substeps", "adaptive_substeps", "frames_per_second", "threads", "passes", "double_precision"});
     if (const auto name = solver->find("name"))
       scene.solver = cloth::solver_named(name->string_among(cloth::k_solver_names));
     if (const auto substeps = solver->find("substeps")) scene.substeps = substeps->integer_in(1, 10000);
     if (const auto adaptive = solver->find("adaptive_substeps")) scene.adaptive_substeps = adaptive->boolean();
     if (const auto threads = solver->find("threads")) scene.threads = threads->integer_in(1, k_most_threads);
+    if (const auto passes = solver->find("passes")) scene.passes = passes->integer_in(1, 100);
+    if (const auto precise = solver->find("double_precision")) scene.double_precision = precise->boolean();
     if (const auto rate = solver->find("frames_per_second")) scene.frames_per_second = rate->integer_in(1, 10000);
   }
   if (const auto collision = json.find("collision")) {
-    collision->only_keys({"backend", "self_collision"});
+    collision->only_keys({"backend", "self_collision", "features", "swept"});
     if (const auto backend = collision->find("backend"))
       scene.backend = proxies::backend_named(backend->string_among(proxies::k_backend_names));
     if (const auto self = collision->find("self_collision")) scene.self_collision = self->boolean();
+    if (const auto features = collision->find("features"))
+      scene.features = cloth::contact_features_named(features->string_among(cloth::k_contact_features_names));
+    if (const auto swept = collision->find("swept")) scene.swept = swept->boolean();
   }
   if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);
   else scene.drape = fs::path(file).replace_extension(".drape.json");

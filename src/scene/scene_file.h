@@ -30,6 +30,7 @@ struct GarmentEntry {
   std::filesystem::path file;
   Vec3 scale = Vec3::Ones();  ///< per axis, about the model's origin
   Vec3 offset = Vec3::Zero(); ///< m, after the scale
+  double resolution = 1.0;    ///< times the garment's own cells a side
 };
 
 /// A scene as authored.
@@ -48,7 +49,11 @@ struct SceneDescription {
   int threads = 1;               ///< that step garments side by side; never more than there are garments
   proxies::Backend backend = proxies::Backend::hybrid;
   bool self_collision = false; ///< of each garment with itself; solver xpbd only
-  std::filesystem::path drape; ///< where the settled garments are kept
+  cloth::ContactFeatures features = cloth::ContactFeatures::automatic; ///< what of the cloth meets colliders
+  bool swept = true;             ///< contacts by time of impact where something moves far
+  int passes = 1;                ///< over the constraints, a substep; solver xpbd only
+  bool double_precision = false; ///< of the solver's kernels
+  std::filesystem::path drape;   ///< where the settled garments are kept
 };
 
 /// Throws InputError with file, JSON pointer, found and expected.

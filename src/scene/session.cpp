@@ -74,6 +74,10 @@ Session::Session(const Scene& scene)
   cloth::SolverOptions options;
   options.kind = scene.description.solver;
   options.self_collision = scene.description.self_collision;
+  options.features = scene.description.features;
+  options.swept = scene.description.swept;
+  options.passes = scene.description.passes;
+  options.double_precision = scene.description.double_precision;
   for (const cloth::Garment& garment : scene.garments) {
     garments_.emplace_back(cloth::make_solver(garment, options), garment);
     pins_start_.emplace_back(garment.pins.size());

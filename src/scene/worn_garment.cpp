@@ -7,7 +7,8 @@ namespace tutu::app {
 
 WornGarment put_on(const GarmentEntry& entry, const rig::Character& character, const std::string& character_file) {
   WornGarment worn;
-  worn.garment = cloth::build_garment(cloth::fitted(cloth::read_garment(entry.file), entry.scale, entry.offset));
+  worn.garment = cloth::build_garment(
+      cloth::fitted(cloth::resampled(cloth::read_garment(entry.file), entry.resolution), entry.scale, entry.offset));
   worn.skin_pins = bind_to_skin(worn.garment, character);
   for (std::size_t a = 0; a < worn.garment.attachments.size(); ++a) {
     if (worn.garment.attachments[a].skin) {
