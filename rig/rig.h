@@ -2,6 +2,7 @@
 //
 //   file --import_character--> Skeleton + Mesh + Skin (+ RawClips)
 //   RawClip --build_clip--> Clip --sample--> local pose --model_from_local--> model_from_joint
+//   local pose --drag_joint, solve_limb, solve_chain--> local pose
 //   model_from_joint --skinning_palette--> palette --skin_vertices--> the posed mesh (only when something asks for it)
 //
 // Spaces. `local`: to the parent joint. `model`: to the character's root; right-handed, +Y up, the character faces +Z.
@@ -16,6 +17,7 @@
 #include "rig/drag.h"         // IWYU pragma: export
 #include "rig/error.h"        // IWYU pragma: export
 #include "rig/file_io.h"      // IWYU pragma: export
+#include "rig/ik.h"           // IWYU pragma: export
 #include "rig/json_file.h"    // IWYU pragma: export
 #include "rig/mannequin.h"    // IWYU pragma: export
 #include "rig/math.h"         // IWYU pragma: export
