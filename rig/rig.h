@@ -10,19 +10,21 @@
 // Descriptions (Skeleton, Mesh, Skin, Clip) are immutable flat arrays; poses are spans that the caller owns.
 #pragma once
 
-#include "rig/body_regions.h" // IWYU pragma: export
-#include "rig/character.h"    // IWYU pragma: export
-#include "rig/clip.h"         // IWYU pragma: export
-#include "rig/clip_file.h"    // IWYU pragma: export
-#include "rig/drag.h"         // IWYU pragma: export
-#include "rig/error.h"        // IWYU pragma: export
-#include "rig/file_io.h"      // IWYU pragma: export
-#include "rig/ik.h"           // IWYU pragma: export
-#include "rig/json_file.h"    // IWYU pragma: export
-#include "rig/mannequin.h"    // IWYU pragma: export
-#include "rig/math.h"         // IWYU pragma: export
-#include "rig/mesh.h"         // IWYU pragma: export
-#include "rig/skeleton.h"     // IWYU pragma: export
-#include "rig/skin.h"         // IWYU pragma: export
-#include "rig/strong_poses.h" // IWYU pragma: export
-#include "rig/surface.h"      // IWYU pragma: export
+#include "rig/body_regions.h"  // IWYU pragma: export
+#include "rig/character.h"     // IWYU pragma: export
+#include "rig/clip.h"          // IWYU pragma: export
+#include "rig/clip_file.h"     // IWYU pragma: export
+#include "rig/drag.h"          // IWYU pragma: export
+#include "rig/error.h"         // IWYU pragma: export
+#include "rig/file_io.h"       // IWYU pragma: export
+#include "rig/flight.h"        // IWYU pragma: export
+#include "rig/ik.h"            // IWYU pragma: export
+#include "rig/interpolation.h" // IWYU pragma: export
+#include "rig/json_file.h"     // IWYU pragma: export
+#include "rig/mannequin.h"     // IWYU pragma: export
+#include "rig/math.h"          // IWYU pragma: export
+#include "rig/mesh.h"          // IWYU pragma: export
+#include "rig/skeleton.h"      // IWYU pragma: export
+#include "rig/skin.h"          // IWYU pragma: export
+#include "rig/strong_poses.h"  // IWYU pragma: export
+#include "rig/surface.h"       // IWYU pragma: export

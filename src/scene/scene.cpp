@@ -68,6 +68,7 @@ Scene load_scene(const SceneDescription& description) {
   for (const std::string& note : import.report.notes)
     scene.notes.push_back(description.character.filename().string() + ": " + note);
   scene.clip = load_motion(description, import, scene.notes);
+  if (description.interpolation) rig::set_interpolation(scene.clip, *description.interpolation);
   scene.character = std::move(import.character);
 
   if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, scene.character.skeleton);

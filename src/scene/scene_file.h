@@ -38,6 +38,7 @@ struct SceneDescription {
   std::filesystem::path character;
   int max_influences = 4;
   Motion motion;
+  std::optional<rig::Interpolation> interpolation; ///< instead of the clip's own
   std::optional<std::filesystem::path> proxies;
   std::vector<GarmentEntry> garments;
   std::optional<double> ground_height = 0.0; ///< m; none = no ground
