@@ -1,6 +1,7 @@
 // rig: joints move.
 //
 //   file --import_character--> Skeleton + Mesh + Skin (+ RawClips)
+//   BVH file --read_bvh--> its own Skeleton + Clip --retarget--> Clip
 //   RawClip --build_clip--> Clip --sample--> local pose --model_from_local--> model_from_joint
 //   local pose --drag_joint, solve_limb, solve_chain--> local pose
 //   model_from_joint --skinning_palette--> palette --skin_vertices--> the posed mesh (only when something asks for it)
@@ -11,6 +12,7 @@
 #pragma once
 
 #include "rig/body_regions.h"  // IWYU pragma: export
+#include "rig/bvh.h"           // IWYU pragma: export
 #include "rig/character.h"     // IWYU pragma: export
 #include "rig/clip.h"          // IWYU pragma: export
 #include "rig/clip_file.h"     // IWYU pragma: export

@@ -3,9 +3,11 @@
 
 #include "cloth/solver.h"
 #include "proxies/collision_query.h"
+#include "rig/bvh.h"
 #include "rig/clip_file.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -22,7 +24,13 @@ struct ClipMotion {
 struct OwnMotion {
   std::variant<int, std::string> animation;
 };
-using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts>;
+/// A take of motion capture, put on the character by joint names.
+struct MocapMotion {
+  std::filesystem::path bvh;
+  rig::BvhOptions options;
+  std::map<std::string, std::optional<std::string>> joints; ///< the take's name -> the character's; none: left out
+};
+using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts, MocapMotion>;
 
 inline constexpr int k_most_threads = 256;
 
