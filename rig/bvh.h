@@ -28,8 +28,8 @@ struct Mocap {
 /// On a character its travel is scaled anew, by rest heights (retarget).
 inline constexpr double k_bvh_stature = 1.7;
 
-/// Reads a take. Rotations are the product of the channels in their order, left to right [Meredith and Maddock 2001,
-/// sec. 2.2]; the file is taken to be right-handed with +Y up, as it nearly always is. Throws InputError with file and
+/// Reads a take. Rotations are the product of the channels in their order, left to right [Meredith and Maddock
+/// 2001]; the file is taken to be right-handed with +Y up, as it nearly always is. Throws InputError with file and
 /// line on all that is malformed, on rest frames and times that are not there.
 Mocap read_bvh(const std::filesystem::path& file, const BvhOptions& options = {});
 

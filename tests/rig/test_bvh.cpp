@@ -1,6 +1,7 @@
 #include "rig/bvh.h"
 #include "rig/error.h"
 #include "rig/file_io.h"
+#include "rig/mannequin.h"
 #include "tests/support/paths.h"
 
 #include <gmock/gmock.h>
@@ -128,6 +129,45 @@ TEST(Bvh, WhatIsMalformedIsToldWithItsLine) {
   const std::string whole = k_take;
   for (std::size_t length = 0; length + 2 < whole.size(); length += 7)
     EXPECT_NE(error_of(whole.substr(0, length)), "") << length; // never a crash, never half a take
+}
+
+TEST(Bvh, ACarnegieMellonTakeOnTheMannequin) {
+  Mocap take = read_bvh(test::assimp_model("BVH/01_01.bvh"), {.rest_frame = 0, .from = 1.0 / 120.0, .to = 12.0});
+  EXPECT_EQ(take.skeleton.joint_count(), 31);
+  EXPECT_NEAR(take.clip.duration(), 12.0, 0.02);
+  rename_joints(take.skeleton,
+                {{"LowerBack", "Spine"},
+                 {"Spine", "Spine1"},
+                 {"Spine1", "Spine2"},
+                 {"LeftShoulder", std::nullopt},
+                 {"RightShoulder", std::nullopt},
+                 {"LeftToeBase", std::nullopt},
+                 {"RightToeBase", std::nullopt}},
+                "01_01.bvh");
+  const Skeleton target = make_mannequin().skeleton;
+  const Clip clip = retarget(take.clip, take.skeleton, target, nullptr);
+  std::vector<Transform> source_model(take.skeleton.joint_count()), model(target.joint_count());
+  double worst = 0.0, lowest = 1.0, highest_low = 0.0;
+  for (int k = 0; k < static_cast<int>(clip.times.size()); k += 7) {
+    model_from_local(take.skeleton, take.clip.key(k), source_model);
+    model_from_local(target, clip.key(k), model);
+    const auto way = [](const Skeleton& skeleton, const std::vector<Transform>& joints, const char* a, const char* b) {
+      return Vec3((joints[*skeleton.find(b)].translation - joints[*skeleton.find(a)].translation).normalized());
+    };
+    for (const auto& [a, b] : {std::pair{"LeftUpLeg", "LeftLeg"},
+                               {"RightLeg", "RightFoot"},
+                               {"LeftArm", "LeftForeArm"},
+                               {"RightForeArm", "RightHand"}})
+      worst = std::max(worst, (way(target, model, a, b) - way(take.skeleton, source_model, a, b)).norm());
+    const double low = std::min(model[*target.find("LeftToeBase")].translation.y(),
+                                model[*target.find("RightToeBase")].translation.y());
+    lowest = std::min(lowest, low);
+    highest_low = std::max(highest_low, low);
+  }
+  std::printf("bones point as the actor's within %.1e; the lower toe is %.0f to %.0f mm high\n", worst, 1e3 * lowest,
+              1e3 * highest_low);
+  EXPECT_LT(worst, 1e-9);
+  EXPECT_GT(lowest, -0.1);
 }
 
 } // namespace
