@@ -12,7 +12,7 @@
 namespace tutu::rig {
 
 /// How far a joint turns away from rest. The turn is split into a twist about `axis` and a swing that moves the axis
-/// (`rest^-1 local = swing * twist`) [Grassia 1998, sec. 5; Dobrowolski 2015]; each is limited by itself. A ball joint
+/// (`rest^-1 local = swing * twist`) [Dobrowolski 2015]; each is limited by itself. A ball joint
 /// has its bone for the axis; a hinge has its hinge for the axis and no swing.
 struct JointLimit {
   int joint = 0;

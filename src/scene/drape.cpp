@@ -96,6 +96,10 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   // Without these the hash stays that of drapes made before there were any.
   if (d.self_collision) add(1.0);
   if (d.backend == proxies::Backend::mesh) add(2.0);
+  const bool meets_skin =
+      d.backend == proxies::Backend::mesh || std::any_of(scene.skin_pins.begin(), scene.skin_pins.end(),
+                                                         [](const SkinPins& pins) { return !pins.bindings.empty(); });
+  if (meets_skin && d.skinning != rig::Skinning::linear) add(3.0, static_cast<double>(d.skinning));
   return cloth::state_hash(numbers);
 }
 

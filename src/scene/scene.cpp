@@ -82,6 +82,7 @@ Scene load_scene(const SceneDescription& description) {
   scene.clip = load_motion(description, import, scene.notes);
   if (description.interpolation) rig::set_interpolation(scene.clip, *description.interpolation);
   scene.character = std::move(import.character);
+  rig::set_skinning(scene.character.skin, scene.character.mesh, description.skinning, description.character.string());
 
   if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, scene.character.skeleton);
   for (const GarmentEntry& entry : description.garments) {

@@ -80,8 +80,8 @@ GarmentEntry read_garment_entry(const JsonValue& json) {
 
 SceneDescription read_scene(const fs::path& file) {
   const JsonValue json = JsonValue::read(file);
-  json.only_keys(
-      {"character", "motion", "interpolation", "proxies", "garments", "ground", "solver", "collision", "drape"});
+  json.only_keys({"character", "motion", "interpolation", "skinning", "proxies", "garments", "ground", "solver",
+                  "collision", "drape"});
   SceneDescription scene;
   scene.file = file;
   const JsonValue character = json.at("character");
@@ -98,6 +98,8 @@ SceneDescription read_scene(const fs::path& file) {
   scene.motion = read_motion(json.at("motion"));
   if (const auto interpolation = json.find("interpolation"))
     scene.interpolation = rig::interpolation_named(interpolation->string_among(rig::k_interpolation_names));
+  if (const auto skinning = json.find("skinning"))
+    scene.skinning = rig::skinning_named(skinning->string_among(rig::k_skinning_names));
   if (const auto proxies = json.find("proxies")) scene.proxies = existing_in(*proxies);
   if (const auto garments = json.find("garments"))
     for (const JsonValue& garment : garments->items()) scene.garments.push_back(read_garment_entry(garment));

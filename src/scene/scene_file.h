@@ -5,6 +5,7 @@
 #include "proxies/collision_query.h"
 #include "rig/bvh.h"
 #include "rig/clip_file.h"
+#include "rig/skin.h"
 
 #include <filesystem>
 #include <map>
@@ -45,6 +46,7 @@ struct SceneDescription {
   std::filesystem::path file;
   std::filesystem::path character;
   int max_influences = 4;
+  rig::Skinning skinning = rig::Skinning::linear;
   Motion motion;
   std::optional<rig::Interpolation> interpolation; ///< instead of the clip's own
   std::optional<std::filesystem::path> proxies;
