@@ -41,7 +41,7 @@ struct Skin {
 /// that the same joints move in the same proportions,
 ///   p_i = sum_t s(w_i, w_t) a_t c_t / sum_t s(w_i, w_t) a_t over triangles t (area a, centre c, mean weights w),
 ///   s(w, u) = sum_j<k w_j w_k u_j u_k exp(-((w_j u_k - w_k u_j) / 0.1)^2)
-/// [Le and Hodgins 2016]; some seconds for a body. Throws InputError (naming `file`) for binds with a
+/// [Le and Hodgins 2016]; under a second for a body. Throws InputError (naming `file`) for binds with a
 /// scale, which rigid motions cannot hold.
 void set_skinning(Skin& skin, const Mesh& mesh, Skinning method, const std::string& file);
 
