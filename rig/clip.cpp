@@ -1,6 +1,8 @@
 #include "rig/clip.h"
 
 #include "rig/error.h"
+#include "rig/flight.h"
+#include "rig/interpolation.h"
 #include "rig/json_file.h"
 
 #include <algorithm>
@@ -21,6 +23,27 @@ std::string shown(double value) {
 std::string place_of(const RawClip& raw, std::size_t key) {
   const std::string& name = raw.keys[key].name;
   return "key " + std::to_string(key) + (name.empty() ? "" : " (" + name + ")");
+}
+
+/// Between two keys, by LERP and nlerp or slerp. What does not move keeps its bits; (1 - s) x + s x need not.
+Transform blended(const Transform& from, const Transform& to, double s, Interpolation interpolation) {
+  Transform result = interpolate(from, to, s);
+  if (interpolation == Interpolation::slerp) result.rotation = from.rotation.slerp(s, to.rotation);
+  if (from.rotation.coeffs() == to.rotation.coeffs()) result.rotation = from.rotation;
+  for (int axis = 0; axis < 3; ++axis)
+    if (from.translation[axis] == to.translation[axis]) result.translation[axis] = from.translation[axis];
+  return result;
+}
+
+/// Between two keys, by the cubics through both with the velocities there.
+Transform blended(const Transform& from, const Transform& to, const Clip::Velocity& start, const Clip::Velocity& end,
+                  double h, double s) {
+  Transform result;
+  result.translation = hermite(from.translation, to.translation, start.linear, end.linear, h, s);
+  result.rotation = from.rotation.coeffs() == to.rotation.coeffs()
+                        ? from.rotation
+                        : hermite(from.rotation, to.rotation, start.angular, end.angular, h, s);
+  return result;
 }
 
 /// The time of the clip itself that `time` means: inside the keys, before the first or behind the last.
@@ -82,7 +105,12 @@ Clip build_clip(const RawClip& raw, const Skeleton& skeleton) {
       if (key.translation) local[*joint].translation = *key.translation;
       if (key.rotation) local[*joint].rotation = *key.rotation;
     }
+    clip.airborne.push_back(raw.keys[k].airborne);
   }
+  for (int j = 0; j < clip.joint_count; ++j)
+    if (skeleton.parents[j] == k_no_parent) clip.roots.push_back(j);
+  make_flights(clip, raw.file);
+  set_interpolation(clip, raw.interpolation);
   return clip;
 }
 
@@ -97,15 +125,25 @@ void sample(const Clip& clip, double time, std::span<Transform> local) {
 
   const int k = static_cast<int>(after - clip.times.begin()) - 1;
   if (t == clip.times[k]) return held(k);
-  const double s = (t - clip.times[k]) / (clip.times[k + 1] - clip.times[k]);
+  const double h = clip.times[k + 1] - clip.times[k], s = (t - clip.times[k]) / h;
   const std::span<const Transform> from = clip.key(k), to = clip.key(k + 1);
-  for (std::size_t j = 0; j < local.size(); ++j) {
-    // What does not move keeps its bits; (1 - s) x + s x need not.
-    local[j] = interpolate(from[j], to[j], s);
-    if (from[j].rotation.coeffs() == to[j].rotation.coeffs()) local[j].rotation = from[j].rotation;
-    for (int axis = 0; axis < 3; ++axis)
-      if (from[j].translation[axis] == to[j].translation[axis]) local[j].translation[axis] = from[j].translation[axis];
+  if (clip.interpolation == Interpolation::cubic) {
+    const Clip::Velocity* start = clip.velocities.data() + static_cast<std::size_t>(k) * local.size();
+    const Clip::Velocity* end = start + local.size();
+    for (std::size_t j = 0; j < local.size(); ++j) local[j] = blended(from[j], to[j], start[j], end[j], h, s);
+  } else {
+    for (std::size_t j = 0; j < local.size(); ++j) local[j] = blended(from[j], to[j], s, clip.interpolation);
   }
+  if (!is_flight(clip, k)) return;
+  for (const int root : clip.roots)
+    local[root].translation =
+        (1.0 - s) * from[root].translation + s * to[root].translation + above_chord(t - clip.times[k], h);
+}
+
+Interpolation interpolation_named(std::string_view name) {
+  const auto found = std::find(k_interpolation_names.begin(), k_interpolation_names.end(), name);
+  assert(found != k_interpolation_names.end());
+  return static_cast<Interpolation>(found - k_interpolation_names.begin());
 }
 
 } // namespace tutu::rig

@@ -20,10 +20,11 @@ JointKey read_joint(const JsonValue& value) {
 }
 
 RawClip::Key read_key(const JsonValue& value) {
-  value.only_keys({"time", "name", "joints"});
+  value.only_keys({"time", "name", "airborne", "joints"});
   RawClip::Key key;
   key.time = value.at("time").number();
   if (const auto name = value.find("name")) key.name = name->string();
+  if (const auto airborne = value.find("airborne")) key.airborne = airborne->boolean();
   if (const auto joints = value.find("joints"))
     for (const auto& [name, joint] : joints->members()) key.joints[name] = read_joint(joint);
   return key;
@@ -50,6 +51,7 @@ std::string text_of(const JointKey& joint) {
 std::string text_of(const RawClip::Key& key) {
   std::string text = "{\"time\": " + text_of(key.time);
   if (!key.name.empty()) text += ", \"name\": " + text_of(key.name);
+  if (key.airborne) text += ", \"airborne\": true";
   text += ", \"joints\": {";
   const char* separator = "\n";
   for (const auto& [name, joint] : key.joints) {
@@ -63,7 +65,7 @@ std::string text_of(const RawClip::Key& key) {
 
 RawClip read_clip(const std::filesystem::path& file) {
   const JsonValue root = JsonValue::read(file);
-  root.only_keys({"name", "extrapolation", "keys"});
+  root.only_keys({"name", "extrapolation", "interpolation", "keys"});
   RawClip clip;
   clip.file = file.string();
   const auto name = root.find("name");
@@ -72,6 +74,8 @@ RawClip read_clip(const std::filesystem::path& file) {
     clip.extrapolation = extrapolation->string_among(std::array<std::string_view, 2>{"loop", "clamp"}) == "clamp"
                              ? Extrapolation::clamp
                              : Extrapolation::loop;
+  if (const auto interpolation = root.find("interpolation"))
+    clip.interpolation = interpolation_named(interpolation->string_among(k_interpolation_names));
 
   const JsonValue keys = root.at("keys");
   for (const JsonValue& value : keys.items()) {
@@ -91,6 +95,8 @@ void write_clip(const RawClip& clip, const std::filesystem::path& file) {
   std::string text = "{\n  \"name\": " + text_of(clip.name) + ",\n";
   text +=
       std::string("  \"extrapolation\": ") + (clip.extrapolation == Extrapolation::clamp ? "\"clamp\"" : "\"loop\"");
+  text += ",\n  \"interpolation\": ";
+  text += text_of(k_interpolation_names[static_cast<std::size_t>(clip.interpolation)]);
   text += ",\n  \"keys\": [";
   const char* separator = "\n    ";
   for (const RawClip::Key& key : clip.keys) {

@@ -9,8 +9,8 @@
 
 namespace tutu::rig {
 
-/// JSON (assets/schema/clip.schema.json); the name defaults to the file's, extrapolation to loop. Throws InputError
-/// with file, JSON pointer, found and expected.
+/// JSON (assets/schema/clip.schema.json); the name defaults to the file's, extrapolation to loop, interpolation to
+/// nlerp. Throws InputError with file, JSON pointer, found and expected.
 RawClip read_clip(const std::filesystem::path& file);
 void write_clip(const RawClip& clip, const std::filesystem::path& file);
 
@@ -29,8 +29,8 @@ struct ThreeTexts {
 RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std::string* unit_note);
 
 /// Writes every joint of every key (what is not given is as at rest) in skeleton order, and that order to
-/// `files.joints` where given; names of keys and the extrapolation have no place. Shortest decimal form that reads back
-/// to the same bits.
+/// `files.joints` where given; names of keys, extrapolation, interpolation and flights have no place. Shortest decimal
+/// form that reads back to the same bits.
 void write_three_texts(const RawClip& clip, const Skeleton& skeleton, const ThreeTexts& files);
 
 } // namespace tutu::rig

@@ -21,4 +21,11 @@ Vec3 nearest_on_bone_sphere(const Vec3& centre, const Vec3& joint, const Vec3& t
 /// turned and changes nothing. A root joint is translated. Bone lengths are kept.
 void drag_joint(const Skeleton& skeleton, std::span<Transform> local, int joint, const Vec3& target);
 
+/// Drags `joint` to `target` as drag_joint does, but turns the one bone only: as if a pseudo-joint stood at the
+/// parent's origin, with `joint` its only child. The turn goes into the joint's own transform,
+///   local <- (R_parent^-1 R(theta, n) R_parent) local,
+/// translation and rotation alike, so that parent and siblings keep their bits. A pose made so needs its translations
+/// kept with it.
+void drag_joint_alone(const Skeleton& skeleton, std::span<Transform> local, int joint, const Vec3& target);
+
 } // namespace tutu::rig

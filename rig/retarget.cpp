@@ -1,5 +1,6 @@
 #include "rig/clip.h"
 #include "rig/error.h"
+#include "rig/flight.h"
 
 namespace tutu::rig {
 namespace {
@@ -81,7 +82,11 @@ Clip retarget(const Clip& clip, const Skeleton& source, const Skeleton& target, 
   const std::vector<Transform> source_rest = rest_model(source), target_rest = rest_model(target);
   const std::vector<Quat> alignment = alignments(partner, above, source_rest, target_rest);
 
-  Clip result{clip.name, clip.extrapolation, target.joint_count(), clip.times, {}};
+  Clip result;
+  result.name = clip.name;
+  result.extrapolation = clip.extrapolation;
+  result.joint_count = target.joint_count();
+  result.times = clip.times;
   result.local.reserve(clip.times.size() * target.rest_local.size());
   std::vector<Transform> source_model(source.joint_count()), target_model(target.joint_count());
   for (int k = 0; k < static_cast<int>(clip.times.size()); ++k) {
@@ -104,6 +109,15 @@ Clip retarget(const Clip& clip, const Skeleton& source, const Skeleton& target, 
       result.local.push_back(local);
     }
   }
+  for (int t = 0; t < target.joint_count(); ++t)
+    if (target.parents[t] == k_no_parent) result.roots.push_back(t);
+  if (partner[result.roots.front()] != k_unpaired) {
+    result.airborne = clip.airborne;
+    make_flights(result, "");
+  } else {
+    result.airborne.assign(clip.times.size(), false);
+  }
+  set_interpolation(result, clip.interpolation);
   return result;
 }
 

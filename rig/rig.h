@@ -1,7 +1,9 @@
 // rig: joints move.
 //
 //   file --import_character--> Skeleton + Mesh + Skin (+ RawClips)
+//   BVH file --read_bvh--> its own Skeleton + Clip --retarget--> Clip
 //   RawClip --build_clip--> Clip --sample--> local pose --model_from_local--> model_from_joint
+//   local pose --drag_joint, solve_limb, solve_chain--> local pose
 //   model_from_joint --skinning_palette--> palette --skin_vertices--> the posed mesh (only when something asks for it)
 //
 // Spaces. `local`: to the parent joint. `model`: to the character's root; right-handed, +Y up, the character faces +Z.
@@ -9,18 +11,22 @@
 // Descriptions (Skeleton, Mesh, Skin, Clip) are immutable flat arrays; poses are spans that the caller owns.
 #pragma once
 
-#include "rig/body_regions.h" // IWYU pragma: export
-#include "rig/character.h"    // IWYU pragma: export
-#include "rig/clip.h"         // IWYU pragma: export
-#include "rig/clip_file.h"    // IWYU pragma: export
-#include "rig/drag.h"         // IWYU pragma: export
-#include "rig/error.h"        // IWYU pragma: export
-#include "rig/file_io.h"      // IWYU pragma: export
-#include "rig/json_file.h"    // IWYU pragma: export
-#include "rig/mannequin.h"    // IWYU pragma: export
-#include "rig/math.h"         // IWYU pragma: export
-#include "rig/mesh.h"         // IWYU pragma: export
-#include "rig/skeleton.h"     // IWYU pragma: export
-#include "rig/skin.h"         // IWYU pragma: export
-#include "rig/strong_poses.h" // IWYU pragma: export
-#include "rig/surface.h"      // IWYU pragma: export
+#include "rig/body_regions.h"  // IWYU pragma: export
+#include "rig/bvh.h"           // IWYU pragma: export
+#include "rig/character.h"     // IWYU pragma: export
+#include "rig/clip.h"          // IWYU pragma: export
+#include "rig/clip_file.h"     // IWYU pragma: export
+#include "rig/drag.h"          // IWYU pragma: export
+#include "rig/error.h"         // IWYU pragma: export
+#include "rig/file_io.h"       // IWYU pragma: export
+#include "rig/flight.h"        // IWYU pragma: export
+#include "rig/ik.h"            // IWYU pragma: export
+#include "rig/interpolation.h" // IWYU pragma: export
+#include "rig/json_file.h"     // IWYU pragma: export
+#include "rig/mannequin.h"     // IWYU pragma: export
+#include "rig/math.h"          // IWYU pragma: export
+#include "rig/mesh.h"          // IWYU pragma: export
+#include "rig/skeleton.h"      // IWYU pragma: export
+#include "rig/skin.h"          // IWYU pragma: export
+#include "rig/strong_poses.h"  // IWYU pragma: export
+#include "rig/surface.h"       // IWYU pragma: export

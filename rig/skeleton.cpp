@@ -60,6 +60,13 @@ void model_from_local(const Skeleton& skeleton, std::span<const Transform> local
   }
 }
 
+Transform model_of_joint(const Skeleton& skeleton, std::span<const Transform> local, int joint) {
+  Transform model = local[joint];
+  for (int above = skeleton.parents[joint]; above != k_no_parent; above = skeleton.parents[above])
+    model = local[above] * model;
+  return model;
+}
+
 void local_from_model(const Skeleton& skeleton, std::span<const Transform> model, std::span<Transform> local) {
   for (int j = 0; j < skeleton.joint_count(); ++j) {
     const int parent = skeleton.parents[j];

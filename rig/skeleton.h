@@ -36,6 +36,9 @@ std::string_view bare_joint_name(std::string_view name);
 /// entries.
 void model_from_local(const Skeleton& skeleton, std::span<const Transform> local, std::span<Transform> model);
 
+/// model_from_joint of one joint, collected on the way up: for few joints, or where only few have changed.
+Transform model_of_joint(const Skeleton& skeleton, std::span<const Transform> local, int joint);
+
 /// The inverse of model_from_local.
 void local_from_model(const Skeleton& skeleton, std::span<const Transform> model, std::span<Transform> local);
 

@@ -101,6 +101,10 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
   if (!d.swept) add(4.0);
   if (d.passes != 1) add(5.0, d.passes);
   if (d.double_precision) add(6.0);
+  const bool meets_skin =
+      d.backend == proxies::Backend::mesh || std::any_of(scene.skin_pins.begin(), scene.skin_pins.end(),
+                                                         [](const SkinPins& pins) { return !pins.bindings.empty(); });
+  if (meets_skin && d.skinning != rig::Skinning::linear) add(7.0, static_cast<double>(d.skinning));
   return cloth::state_hash(numbers);
 }
 

@@ -13,17 +13,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Puts `raw` on the character, by way of the skeleton it was made for when that is another one.
+/// A clip made for `source` on the character; what found no joint there becomes a note.
+rig::Clip retargeted(const rig::Clip& clip, const rig::Skeleton& source, const rig::Skeleton& skeleton,
+                     const fs::path& file, std::vector<std::string>& notes) {
+  std::vector<std::string> unmatched;
+  rig::Clip result = rig::retarget(clip, source, skeleton, &unmatched);
+  if (!unmatched.empty())
+    notes.push_back(fmt::format("{}: no joint here for {}", file.filename().string(), fmt::join(unmatched, ", ")));
+  return result;
+}
+
+/// Puts the clip on the character, by way of the skeleton it was made for when that is another one.
 rig::Clip clip_for(const ClipMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
   const rig::RawClip raw = rig::read_clip(motion.clip);
   if (!motion.retarget_from) return rig::build_clip(raw, skeleton);
   const rig::Skeleton source = rig::import_character(*motion.retarget_from).character.skeleton;
-  std::vector<std::string> unmatched;
-  rig::Clip clip = rig::retarget(rig::build_clip(raw, source), source, skeleton, &unmatched);
-  if (!unmatched.empty())
-    notes.push_back(
-        fmt::format("{}: no joint here for {}", motion.clip.filename().string(), fmt::join(unmatched, ", ")));
-  return clip;
+  return retargeted(rig::build_clip(raw, source), source, skeleton, motion.clip, notes);
+}
+
+rig::Clip clip_for(const MocapMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
+  rig::Mocap take = rig::read_bvh(motion.bvh, motion.options);
+  rig::rename_joints(take.skeleton, motion.joints, motion.bvh.string());
+  return retargeted(take.clip, take.skeleton, skeleton, motion.bvh, notes);
 }
 
 const rig::RawClip& own_animation(const OwnMotion& motion, const rig::Import& import, const std::string& scene_file) {
@@ -56,6 +67,7 @@ rig::Clip load_motion(const SceneDescription& description, const rig::Import& im
     if (!unit_note.empty()) notes.push_back(unit_note);
     return clip;
   }
+  if (const auto* mocap = std::get_if<MocapMotion>(&description.motion)) return clip_for(*mocap, skeleton, notes);
   return clip_for(std::get<ClipMotion>(description.motion), skeleton, notes);
 }
 
@@ -68,7 +80,9 @@ Scene load_scene(const SceneDescription& description) {
   for (const std::string& note : import.report.notes)
     scene.notes.push_back(description.character.filename().string() + ": " + note);
   scene.clip = load_motion(description, import, scene.notes);
+  if (description.interpolation) rig::set_interpolation(scene.clip, *description.interpolation);
   scene.character = std::move(import.character);
+  rig::set_skinning(scene.character.skin, scene.character.mesh, description.skinning, description.character.string());
 
   if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, scene.character.skeleton);
   for (const GarmentEntry& entry : description.garments) {

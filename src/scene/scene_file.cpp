@@ -22,13 +22,29 @@ fs::path existing_in(const JsonValue& json) {
   return path;
 }
 
+MocapMotion read_mocap(const JsonValue& json) {
+  json.only_keys({"bvh", "rest_frame", "from", "to", "joints"});
+  MocapMotion motion{existing_in(json.at("bvh")), {}, {}};
+  if (const auto rest = json.find("rest_frame")) motion.options.rest_frame = rest->integer_in(0, 10'000'000);
+  if (const auto from = json.find("from")) motion.options.from = from->non_negative();
+  if (const auto to = json.find("to")) motion.options.to = to->number_in(motion.options.from, k_largest_number);
+  if (const auto joints = json.find("joints"))
+    for (const auto& [name, other] : joints->members()) {
+      if (other.is_boolean() && !other.boolean()) motion.joints[name] = std::nullopt;
+      else if (other.is_string()) motion.joints[name] = other.string();
+      else throw other.error("the character's joint, or false for none");
+    }
+  return motion;
+}
+
 Motion read_motion(const JsonValue& json) {
   if (json.is_string()) return ClipMotion{existing_in(json), std::nullopt};
-  if (!json.is_object()) throw json.error("a clip's path, or an object with clip, animation or texts");
+  if (!json.is_object()) throw json.error("a clip's path, or an object with clip, animation, texts or bvh");
+  if (json.has("bvh")) return read_mocap(json);
   json.only_keys({"clip", "retarget_from", "animation", "texts"});
   const auto clip = json.find("clip"), animation = json.find("animation"), texts = json.find("texts");
   if (int{clip.has_value()} + int{animation.has_value()} + int{texts.has_value()} != 1)
-    throw json.error("exactly one of: clip, animation, texts");
+    throw json.error("exactly one of: clip, animation, texts, bvh");
   if (const auto from = json.find("retarget_from"); from && !clip) throw from->error("it beside a clip only");
 
   if (clip) {
@@ -65,7 +81,8 @@ GarmentEntry read_garment_entry(const JsonValue& json) {
 
 SceneDescription read_scene(const fs::path& file) {
   const JsonValue json = JsonValue::read(file);
-  json.only_keys({"character", "motion", "proxies", "garments", "ground", "solver", "collision", "drape"});
+  json.only_keys({"character", "motion", "interpolation", "skinning", "proxies", "garments", "ground", "solver",
+                  "collision", "drape"});
   SceneDescription scene;
   scene.file = file;
   const JsonValue character = json.at("character");
@@ -80,6 +97,10 @@ SceneDescription read_scene(const fs::path& file) {
     scene.character = existing_in(character);
   }
   scene.motion = read_motion(json.at("motion"));
+  if (const auto interpolation = json.find("interpolation"))
+    scene.interpolation = rig::interpolation_named(interpolation->string_among(rig::k_interpolation_names));
+  if (const auto skinning = json.find("skinning"))
+    scene.skinning = rig::skinning_named(skinning->string_among(rig::k_skinning_names));
   if (const auto proxies = json.find("proxies")) scene.proxies = existing_in(*proxies);
   if (const auto garments = json.find("garments"))
     for (const JsonValue& garment : garments->items()) scene.garments.push_back(read_garment_entry(garment));

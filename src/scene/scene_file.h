@@ -3,9 +3,12 @@
 
 #include "cloth/solver.h"
 #include "proxies/collision_query.h"
+#include "rig/bvh.h"
 #include "rig/clip_file.h"
+#include "rig/skin.h"
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -22,7 +25,13 @@ struct ClipMotion {
 struct OwnMotion {
   std::variant<int, std::string> animation;
 };
-using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts>;
+/// A take of motion capture, put on the character by joint names.
+struct MocapMotion {
+  std::filesystem::path bvh;
+  rig::BvhOptions options;
+  std::map<std::string, std::optional<std::string>> joints; ///< the take's name -> the character's; none: left out
+};
+using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts, MocapMotion>;
 
 inline constexpr int k_most_threads = 256;
 
@@ -38,7 +47,9 @@ struct SceneDescription {
   std::filesystem::path file;
   std::filesystem::path character;
   int max_influences = 4;
+  rig::Skinning skinning = rig::Skinning::linear;
   Motion motion;
+  std::optional<rig::Interpolation> interpolation; ///< instead of the clip's own
   std::optional<std::filesystem::path> proxies;
   std::vector<GarmentEntry> garments;
   std::optional<double> ground_height = 0.0; ///< m; none = no ground

@@ -49,6 +49,7 @@ Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3
 void keep_what_is_used(const rig::Character& character, SkinPins& pins) {
   const rig::Skin& whole = character.skin;
   pins.skin.influences = whole.influences;
+  pins.skin.method = whole.method;
   std::map<std::uint32_t, std::uint32_t> vertices; // of the character: of pins.mesh
   std::map<std::uint16_t, std::uint16_t> slots;
   for (SkinPins::Binding& binding : pins.bindings)
@@ -59,6 +60,7 @@ void keep_what_is_used(const rig::Character& character, SkinPins& pins) {
       if (!is_new) continue;
       pins.mesh.positions.push_back(character.mesh.positions[of_character]);
       pins.mesh.normals.push_back(character.mesh.normals[of_character]);
+      if (!whole.centres.empty()) pins.skin.centres.push_back(whole.centres[of_character]);
       for (int k = 0; k < whole.influences; ++k) {
         const std::size_t influence = static_cast<std::size_t>(of_character) * whole.influences + k;
         const std::uint16_t slot = whole.slots[influence];

@@ -127,6 +127,9 @@ public:
         proxies::sample_skin(scene.character.mesh.positions, scene.character.mesh.triangles, options.samples, outer);
     result_.options = options;
     result_.census = first_body_.census();
+    if (scene.character.skin.method == rig::Skinning::dual_quaternion) result_.skinning = "dual quaternion skinning";
+    if (scene.character.skin.method == rig::Skinning::centres_of_rotation)
+      result_.skinning = "skinning about centres of rotation";
     result_.skin_samples = static_cast<int>(samples_.size());
     result_.buried_share = 1.0 - samples_.area / result_.census.area;
     effort_.surface_samples = std::max(100, options.samples / 5);

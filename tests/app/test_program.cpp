@@ -181,6 +181,16 @@ TEST_F(Program, TheJumpingHumanJumpsInHisSkirt_slow) {
   EXPECT_EQ(nlohmann::json::parse(read_file(folder_ / "stats.json")).at("frames"), 198);
 }
 
+TEST_F(Program, TheDancerFollowsATakeOfMotionCapture_slow) {
+  const Outcome outcome = run_program({"play", source_file("assets/scenes/mocap.json").string(), "--no-pictures",
+                                       "--json", (folder_ / "stats.json").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  const nlohmann::json stats = nlohmann::json::parse(read_file(folder_ / "stats.json"));
+  EXPECT_EQ(stats.at("frames"), 719);
+  EXPECT_LT(stats.at("stretch").at("p99"), 0.05);
+  EXPECT_LT(stats.at("penetration_mm").at("proxies").at("max"), 1.0);
+}
+
 TEST_F(Program, AHumanDancesOurDance_slow) {
   if (!std::filesystem::exists(human("human-female.dae")))
     GTEST_SKIP() << "no human test characters beside the checkout";

@@ -159,7 +159,34 @@ TEST(SceneFile, ReadsEveryFormOfMotion) {
   EXPECT_FALSE(texts.ground_height.has_value());
   EXPECT_THROW(read(R"({"animation": 2, "clip": "m.json"})"), InputError);
   EXPECT_THROW(read(R"({"animation": 2, "retarget_from": "m.dae"})"), InputError);
+  const MocapMotion mocap = std::get<MocapMotion>(
+      read(R"({"bvh": "t", "rest_frame": 4, "from": 0.5, "to": 2, "joints": {"A": "Hips", "B": false}})").motion);
+  EXPECT_EQ(mocap.bvh, folder / "t");
+  EXPECT_EQ(mocap.options.rest_frame, 4);
+  EXPECT_EQ(mocap.options.to, 2.0);
+  EXPECT_EQ(mocap.joints.at("A"), "Hips");
+  EXPECT_EQ(mocap.joints.at("B"), std::nullopt);
+  EXPECT_THROW(read(R"({"bvh": "t", "joints": {"A": true}})"), InputError);
+  EXPECT_THROW(read(R"({"bvh": "t", "from": 2, "to": 1})"), InputError);
   EXPECT_THROW(read("3"), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(SceneFile, InterpolationAndSkinningAreChosenInTheScene) {
+  const auto folder = scratch_folder();
+  const std::string dancer = source_file("assets/characters/dancer.dae").string(),
+                    clip = source_file("assets/poses/dance.json").string();
+  const auto load = [&](const std::string& more) {
+    write_file(folder / "s.json", R"({"character": ")" + dancer + R"(", "motion": ")" + clip + "\"" + more + "}");
+    return load_scene(read_scene(folder / "s.json"));
+  };
+  const Scene plain = load(""), other = load(R"(, "interpolation": "cubic", "skinning": "dual_quaternion")");
+  EXPECT_EQ(plain.clip.interpolation, rig::Interpolation::nlerp);
+  EXPECT_EQ(plain.character.skin.method, rig::Skinning::linear);
+  EXPECT_EQ(other.clip.interpolation, rig::Interpolation::cubic);
+  EXPECT_EQ(other.character.skin.method, rig::Skinning::dual_quaternion);
+  EXPECT_THROW(load(R"(, "interpolation": "linear")"), InputError);
+  EXPECT_THROW(load(R"(, "skinning": "lbs")"), InputError);
   std::filesystem::remove_all(folder);
 }
 

@@ -99,6 +99,8 @@ TEST(ClipFile, RoundTripKeepsEveryBit) {
     RawClip clip = test::random_clip(random, skeleton, 4);
     clip.name = "a \"name\" with \\ and \xc3\xa9";
     clip.extrapolation = round % 2 == 0 ? Extrapolation::loop : Extrapolation::clamp;
+    clip.interpolation = static_cast<Interpolation>(round % 3);
+    clip.keys[1].airborne = round % 2 == 0;
     clip.keys[1].name.clear();
     clip.keys[2].joints.clear();
     for (auto& [name, joint] : clip.keys[0].joints)
@@ -111,7 +113,11 @@ TEST(ClipFile, RoundTripKeepsEveryBit) {
     const RawClip back = read_clip(file);
     EXPECT_EQ(back.name, clip.name);
     EXPECT_EQ(back.extrapolation, clip.extrapolation);
-    for (int k = 0; k < 4; ++k) EXPECT_EQ(back.keys[k].name, clip.keys[k].name);
+    EXPECT_EQ(back.interpolation, clip.interpolation);
+    for (int k = 0; k < 4; ++k) {
+      EXPECT_EQ(back.keys[k].name, clip.keys[k].name);
+      EXPECT_EQ(back.keys[k].airborne, clip.keys[k].airborne);
+    }
     expect_same_joints(clip, back);
     const std::string written = read_file(file);
     write_clip(back, file);
@@ -131,6 +137,7 @@ TEST(ClipFile, IsLaidOutForPeople) {
   EXPECT_EQ(read_file(file), R"({
   "name": "dance",
   "extrapolation": "loop",
+  "interpolation": "nlerp",
   "keys": [
     {"time": 0.0, "name": "stand", "joints": {
       "Hips": {"translation": [0.0, 1.0, 0.1], "rotation": [0.0, 0.0, 0.0, 1.0]},
@@ -170,6 +177,9 @@ TEST(ClipFile, ErrorsTellFilePlaceFoundAndExpected) {
   EXPECT_THAT(clip_error("{\"keys\": [{\"time\": 0}], \"fps\": 30}"), HasSubstr("unknown key \"fps\""));
   EXPECT_THAT(clip_error("{\"keys\": [{\"time\": 0, \"pose\": 1}]}"), HasSubstr("/keys/0/pose"));
   EXPECT_THAT(clip_error("{\"keys\": [{\"time\": 0}], \"extrapolation\": \"mirror\"}"), HasSubstr("loop, clamp"));
+  EXPECT_THAT(clip_error("{\"keys\": [{\"time\": 0}], \"interpolation\": \"linear\"}"),
+              HasSubstr("nlerp, slerp, cubic"));
+  EXPECT_THAT(clip_error("{\"keys\": [{\"time\": 0, \"airborne\": 1}]}"), HasSubstr("/keys/0/airborne"));
   EXPECT_THAT(clip_error(key("\"scale\": 1")), HasSubstr("/keys/0/joints/Hips/scale: found unknown key"));
   EXPECT_THAT(clip_error(key("\"rotation\": [0, 0, 0, 2]")), HasSubstr("/keys/0/joints/Hips/rotation"));
   EXPECT_THAT(clip_error(key("\"rotation\": [0, 0, 0, 0]")), HasSubstr("unit quaternion"));

@@ -194,4 +194,57 @@ TEST(Drag, ABoneWithoutLengthChangesNothing) {
   EXPECT_TRUE(same(local, skeleton.rest_local));
 }
 
+TEST(DragAlone, MovesTheJointAndNoSibling) {
+  std::mt19937_64 random(8);
+  for (int round = 0; round < 200; ++round) {
+    const Skeleton skeleton = test::random_skeleton(random, 20);
+    std::vector<Transform> local = test::random_pose(random, skeleton), dragged = local;
+    const std::vector<Transform> before = model_of(skeleton, local);
+    const int joint = std::uniform_int_distribution<int>(1, 19)(random), parent = skeleton.parents[joint];
+    const Vec3 target = test::random_vector(random);
+    drag_joint_alone(skeleton, dragged, joint, target);
+    const std::vector<Transform> after = model_of(skeleton, dragged);
+    const Vec3 expected = nearest_on_bone_sphere(before[parent].translation, before[joint].translation, target);
+    EXPECT_LT((after[joint].translation - expected).norm(), 1e-12);
+
+    // The joint turns as it does when all turn; what does not hang on it keeps its place to the bit.
+    std::vector<Transform> together = local;
+    drag_joint(skeleton, together, joint, target);
+    EXPECT_LT(after[joint].rotation.angularDistance(model_of(skeleton, together)[joint].rotation), 1e-7);
+    for (int j = 0; j < 20; ++j) {
+      int above = j;
+      while (above > joint) above = skeleton.parents[above];
+      if (above == joint) continue;
+      EXPECT_EQ(after[j].translation, before[j].translation);
+      EXPECT_EQ(after[j].rotation.coeffs(), before[j].rotation.coeffs());
+    }
+  }
+}
+
+TEST(DragAlone, BoneLengthsOutlastAThousandDrags) {
+  std::mt19937_64 random(9);
+  const Skeleton skeleton = test::random_skeleton(random, 40);
+  std::vector<Transform> local = skeleton.rest_local;
+  for (int i = 0; i < 1000; ++i)
+    drag_joint_alone(skeleton, local, std::uniform_int_distribution<int>(1, 39)(random), test::random_vector(random));
+  for (int j = 1; j < 40; ++j) {
+    EXPECT_NEAR(local[j].translation.norm(), skeleton.rest_local[j].translation.norm(), 1e-13);
+    EXPECT_NEAR(local[j].rotation.norm(), 1.0, 1e-14);
+  }
+}
+
+TEST(DragAlone, NothingToDoChangesNothing) {
+  Skeleton skeleton = small_tree();
+  std::vector<Transform> local = skeleton.rest_local;
+  drag_joint_alone(skeleton, local, 2, model_of(skeleton, local)[2].translation); // there already
+  drag_joint_alone(skeleton, local, 2, {0.5, 1, 0});                              // the centre
+  EXPECT_TRUE(same(local, skeleton.rest_local));
+  skeleton.rest_local[2].translation.setZero();
+  local = skeleton.rest_local;
+  drag_joint_alone(skeleton, local, 2, {3, 4, 5}); // a bone without length
+  EXPECT_TRUE(same(local, skeleton.rest_local));
+  drag_joint_alone(skeleton, local, 0, {3, 4, 5}); // a root is moved
+  EXPECT_EQ(local[0].translation, Vec3(3, 4, 5));
+}
+
 } // namespace
