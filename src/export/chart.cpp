@@ -24,25 +24,17 @@ bool on_path(const char* program) {
   return false;
 }
 
-/// A text as gnuplot reads it between single quotes.
-std::string in_quotes(std::string_view text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-  return result + "'";
-}
-
-std::string script_of(const Chart& chart, const std::filesystem::path& picture, bool svg) {
-  std::string text =
-      svg ? "set terminal svg size 800,500 font 'sans,13' background 'white'\n" : "set terminal png size 800,500\n";
-  text += fmt::format("set output {}\nset title {} noenhanced\nset xlabel {}\nset ylabel {}\nset yrange [0:*]\nset "
-                      "grid\nset key top right noenhanced\n",
-                      in_quotes(picture.string()), in_quotes(chart.title), in_quotes(chart.x), in_quotes(chart.y));
+std::string script_of(const Chart& chart) {
+  std::string text = fmt::format("set title {} noenhanced\nset xlabel {}\nset ylabel {}\nset yrange [0:*]\nset "
+                                 "grid\nset key top right noenhanced\n",
+                                 gnuplot_text(chart.title), gnuplot_text(chart.x), gnuplot_text(chart.y));
   if (!chart.right.empty())
-    text += fmt::format("set y2label {}\nset y2tics\nset ytics nomirror\nset y2range [0:*]\n", in_quotes(chart.right));
+    text +=
+        fmt::format("set y2label {}\nset y2tics\nset ytics nomirror\nset y2range [0:*]\n", gnuplot_text(chart.right));
   std::string plot, data;
   for (const ChartLine& line : chart.lines) {
     plot += fmt::format("{}'-' with linespoints {} title {}", plot.empty() ? "plot " : ", ",
-                        line.right_axis ? "axes x1y2" : "", in_quotes(line.name));
+                        line.right_axis ? "axes x1y2" : "", gnuplot_text(line.name));
     for (const auto& [x, y] : line.points) data += fmt::format("{} {}\n", x, y);
     data += "e\n";
   }
@@ -59,15 +51,28 @@ void require_chart(const std::filesystem::path& file) {
     throw InputError(file.string(), "", "no gnuplot to draw it", "the package gnuplot-nox to be installed");
 }
 
-void write_chart(const Chart& chart, const std::filesystem::path& file) {
+std::string gnuplot_text(std::string_view text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "'";
+}
+
+void draw_with_gnuplot(const std::string& script, int width, int height, const std::filesystem::path& file) {
   require_chart(file);
   PendingFile pending(file);
-  const std::string script = script_of(chart, pending.temporary(), file.extension() == ".svg");
+  const bool svg = file.extension() == ".svg";
+  const std::string head =
+      fmt::format("set terminal {} size {},{}{}\nset output {}\n", svg ? "svg" : "png", width, height,
+                  svg ? " font 'sans,13' background 'white'" : "", gnuplot_text(pending.temporary().string()));
   std::FILE* gnuplot = ::popen("gnuplot", "w");
   if (!gnuplot) throw std::runtime_error(file.string() + ": gnuplot did not start");
-  std::fwrite(script.data(), 1, script.size(), gnuplot);
+  for (const std::string* text : {&head, &script}) std::fwrite(text->data(), 1, text->size(), gnuplot);
   if (::pclose(gnuplot) != 0) throw std::runtime_error(file.string() + ": gnuplot failed");
   pending.commit();
+}
+
+void write_chart(const Chart& chart, const std::filesystem::path& file) {
+  draw_with_gnuplot(script_of(chart), 800, 500, file);
 }
 
 } // namespace tutu::app

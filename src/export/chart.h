@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace tutu::app {
@@ -22,6 +23,12 @@ struct Chart {
 /// Throws InputError on a name that ends neither in .svg nor in .png, and where there is no gnuplot on the PATH: ask
 /// before long work.
 void require_chart(const std::filesystem::path& file);
+
+/// A text as gnuplot reads it, between single quotes.
+std::string gnuplot_text(std::string_view text);
+
+/// Runs a script (without terminal and output) on a picture of so many pixels. Throws as write_chart.
+void draw_with_gnuplot(const std::string& script, int width, int height, const std::filesystem::path& file);
 
 /// Draws it. Throws as require_chart, and std::runtime_error with gnuplot's words when it fails.
 void write_chart(const Chart& chart, const std::filesystem::path& file);
