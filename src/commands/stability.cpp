@@ -9,6 +9,7 @@
 #include "src/stability/margin.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -57,6 +58,9 @@ int run(const Options& options) {
   if (options.fixed_substeps) scene.description.adaptive_substeps = false;
   if (scene.garments.empty())
     throw InputError(scene.description.file.string(), "/garments", "none", "a garment to run");
+  const SceneSetting setting = setting_of(scene);
+  if (std::isinf(stiffest(setting)->step_limit))
+    throw InputError(scene.description.file.string(), "/garments", "every particle held", "a garment that moves");
   fs::create_directories(folder);
   (void)PendingFile(folder / "cells.csv");
   const auto start = draped_start(scene);
@@ -66,7 +70,6 @@ int run(const Options& options) {
   what.quick = options.quick;
   what.starts = options.starts.value_or(options.quick ? 2 : 4);
   what.threads = options.scene.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  const SceneSetting setting = setting_of(scene);
   if (setting.proxies.empty())
     fmt::print(stderr, "note: no proxy comes near the garments: no maps of speed, cells and overlap\n");
   std::vector<StabilityMap> maps = plan_maps(scene, setting, start_overlap(scene, *start), what);

@@ -10,7 +10,7 @@ namespace tutu::app {
 namespace {
 
 constexpr int k_width = 860, k_height = 560; // pixels
-constexpr std::size_t k_line = 105;          // characters under the chart
+constexpr std::size_t k_line = 95;           // characters under the chart
 constexpr double k_text_up = 0.28;           // of a cell: a dot in the middle does not hide it
 
 std::uint32_t number_of(const Rgb& colour) { return colour[0] << 16 | colour[1] << 8 | colour[2]; }

@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <limits>
 
 namespace tutu::app {
 namespace {
 
+constexpr double k_least_gap = 1e-4; // m: cloth of no thickness is mapped as if of this much
 /// s: between these the largest step is searched. Beyond the upper one it is a frame's, and no step.
 constexpr double k_least_step = 1e-5, k_most_step = 1.0 / 30.0;
 
@@ -159,8 +161,9 @@ void add_with_twin(const Maker& maker, StabilityMap map,
   maps.push_back(std::move(twin));
 }
 
-void add_leg_maps(const Maker& maker, const ProxySetting& proxy, std::vector<StabilityMap>& maps) {
-  const double thickness = 2.0 * maker.garment.fabric.contact_offset();
+void add_leg_maps(const Maker& maker, const SceneSetting& setting, const ProxySetting& proxy,
+                  std::vector<StabilityMap>& maps) {
+  const double thickness = 2.0 * std::max(least_gap(setting), k_least_gap);
   constexpr double k_slowest = 0.25; // m/s; slower ones take long and tell nothing
   const bool moves = proxy.speed >= k_slowest;
   const auto speeds = [&] {
@@ -176,14 +179,15 @@ void add_leg_maps(const Maker& maker, const ProxySetting& proxy, std::vector<Sta
     const StabilityScene scene = fast_leg(FastLeg{speed, radius, thick}, seed);
     add_outcome(cell, outcome_of(scene, run_stability(scene, setup)));
   };
+  const std::string no_place = fmt::format("has no proxy near the garments that is faster than {} m/s", k_slowest);
   add_with_twin(maker,
                 {"speed-thickness", "Speed against thickness", what, speeds(),
-                 around("thickness, with twice the clearance", "mm", 1e3, thickness, 2.0, maker.each_way())},
+                 around("thickness, with twice the clearance", "mm", 1e3, thickness, 2.0, maker.each_way()), no_place},
                 run, maps);
   add_with_twin(
       maker,
       {"speed-substeps", "Speed against substeps", what, speeds(),
-       whole_around("substeps a frame (of 1/60 s)", maker.setup().substeps, 2.0, maker.each_way())},
+       whole_around("substeps a frame (of 1/60 s)", maker.setup().substeps, 2.0, maker.each_way()), no_place},
       [=](StabilitySetup setup, double speed, double substeps, std::uint64_t seed, MapCell& cell) {
         setup.substeps = static_cast<int>(substeps);
         run(setup, speed, thickness, seed, cell);
@@ -191,15 +195,19 @@ void add_leg_maps(const Maker& maker, const ProxySetting& proxy, std::vector<Sta
       maps);
 }
 
-void add_contact_maps(const Maker& maker, const ProxySetting& proxy, std::vector<StabilityMap>& maps) {
+void add_contact_maps(const Maker& maker, const GarmentSetting& coarsest, const ProxySetting& proxy,
+                      std::vector<StabilityMap>& maps) {
   StabilityMap map{"cells-radius", "Cell size against proxy radius",
-                   "a capsule pushes into a hanging sheet, in the middle of a cell, across the threads and along them",
-                   around("cell size", "mm", 1e3, maker.own.largest_cell, maker.ratio(), maker.each_way()),
+                   "a capsule pushes into a hanging sheet, in the middle of a cell, across the threads and along them; "
+                   "stretch and rest are not judged",
+                   around("cell size", "mm", 1e3, coarsest.largest_cell, maker.ratio(), maker.each_way()),
                    around("proxy radius", "mm", 1e3, proxy.radius, maker.ratio(), maker.each_way())};
   add_with_twin(
       maker, std::move(map),
       [](const StabilitySetup& setup, double size, double radius, std::uint64_t seed, MapCell& cell) {
-        const StabilityScene scene = coarse_cells(CoarseCells{size, radius, seed % 2 == 0}, seed);
+        StabilityScene scene = coarse_cells(CoarseCells{size, radius, seed % 2 == 0}, seed);
+        // Contacts are what it is about: a sheet of a hand's breadth is stretched by any limb, one of metres swings on.
+        scene.limits.stretch = scene.limits.speed = std::numeric_limits<double>::infinity();
         add_outcome(cell, outcome_of(scene, run_stability(scene, setup)));
       },
       maps);
@@ -218,6 +226,7 @@ void add_overlap_map(const Maker& maker, const ProxySetting& proxy, const StartO
     if (!maker.quick || share == 0.2 || share == 0.4 || share == 0.6 || share == 0.8 || share == 0.95)
       map.x.values.push_back(share);
   if (overlap.depth > 0.0) map.x.own = overlap.depth / overlap.radius;
+  map.no_place = "starts with no particle inside a proxy";
   map.own_method = true;
   map.run = [setup = maker.setup()](double share, double radius, std::uint64_t seed, MapCell& cell) {
     const StabilityScene scene = start_inside(StartInside{radius, share * radius, seed % 2 == 1}, seed);
@@ -254,9 +263,9 @@ std::vector<StabilityMap> plan_maps(const Scene& scene, const SceneSetting& sett
   std::vector<StabilityMap> maps;
   for (const cloth::SolverKind kind : {cloth::SolverKind::mass_spring, cloth::SolverKind::xpbd})
     add_step_maps(maker, kind, maps);
-  if (const ProxySetting* proxy = fastest(setting, garment.fabric.contact_offset())) add_leg_maps(maker, *proxy, maps);
+  if (const ProxySetting* proxy = fastest(setting)) add_leg_maps(maker, setting, *proxy, maps);
   if (const ProxySetting* proxy = thinnest(setting)) {
-    add_contact_maps(maker, *proxy, maps);
+    add_contact_maps(maker, *coarsest(setting), *proxy, maps);
     add_overlap_map(maker, *proxy, overlap, maps);
   }
   add_weight_map(maker, maps);

@@ -40,6 +40,8 @@ struct StabilityMap {
   std::string title;
   std::string what; ///< one sentence: what was run
   MapAxis x, y;
+  /// What to say of a scene that has no value on one of the axes.
+  std::string no_place = "has no place on this map";
   bool of_steps = false;
   bool own_method = false;         ///< solver and safeguards are those of the scene
   std::vector<MapCell> cells = {}; ///< [y * x.values.size() + x]

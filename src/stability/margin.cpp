@@ -20,12 +20,14 @@ void look_along(const StabilityMap& map, bool along_x, Margin& margin) {
   }
 }
 
+std::string rounded(double number) {
+  return number >= 1000.0 ? fmt::format("{:.0f}", number) : fmt::format("{:.3g}", number);
+}
+
 } // namespace
 
 std::string in_words(const MapAxis& axis, double value) {
-  const double number = axis.scale * value;
-  return fmt::format("{}{}{}", number >= 1000.0 ? fmt::format("{:.0f}", number) : fmt::format("{:.3g}", number),
-                     axis.unit.empty() ? "" : " ", axis.unit);
+  return rounded(axis.scale * value) + (axis.unit.empty() ? "" : " ") + axis.unit;
 }
 
 std::optional<Margin> margin_of(const StabilityMap& map, double step) {
@@ -49,14 +51,14 @@ std::optional<Margin> margin_of(const StabilityMap& map, double step) {
 
 std::string in_words(const StabilityMap& map, double step) {
   const std::optional<Margin> margin = margin_of(map, step);
-  if (!margin) return "has no place on this map";
+  if (!margin) return map.x.own && map.y.own ? "is beyond the edge of this map" : map.no_place;
   const MapCell& own = map.cell(margin->ix, margin->iy);
   if (map.of_steps) {
     if (!margin->largest || *margin->largest <= 0.0) return "FAILS: no step holds at its own place";
     const double ratio = *margin->largest / step;
-    return fmt::format("{}: the largest step is {:.3g} ms, the scene's {:.3g} ms is {:.2g} times {}",
+    return fmt::format("{}: the largest step is {:.3g} ms, the scene's {:.3g} ms is {} times {}",
                        margin->holds ? "holds" : "FAILS", 1e3 * *margin->largest, 1e3 * step,
-                       std::max(ratio, 1.0 / ratio), margin->holds ? "below" : "above");
+                       rounded(std::max(ratio, 1.0 / ratio)), margin->holds ? "below" : "above");
   }
   std::string text = margin->holds ? "holds"
                                    : fmt::format("FAILS at its own place: {} of {} starts, mostly {}", own.failed(),
@@ -64,8 +66,8 @@ std::string in_words(const StabilityMap& map, double step) {
   if (!margin->holds) return text;
   if (!margin->nearest) return text + "; nothing fails along either axis of the map";
   const MapAxis& axis = margin->nearest->along_x ? map.x : map.y;
-  return text + fmt::format("; the nearest failure is at {} {}, {:.2g} times {} its own {} ({})", axis.name,
-                            in_words(axis, margin->nearest->value), margin->nearest->ratio,
+  return text + fmt::format("; the nearest failure is at {} {}, {} times {} its own {} ({})", axis.name,
+                            in_words(axis, margin->nearest->value), rounded(margin->nearest->ratio),
                             margin->nearest->value > *axis.own ? "above" : "below", in_words(axis, *axis.own),
                             k_outcome_words[index_of(margin->nearest->how)]);
 }

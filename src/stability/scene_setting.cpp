@@ -21,6 +21,7 @@ constexpr int k_reach_poses = 60;
 GarmentSetting setting_of(const cloth::Garment& garment, const SceneDescription& description) {
   GarmentSetting setting;
   setting.name = garment.name;
+  setting.gap = garment.fabric.contact_offset();
   setting.step_limit = largest_stable_step(garment);
   // Frequencies go with 1 / cell: one patch tells all.
   Patch patch;
@@ -101,25 +102,37 @@ SceneSetting setting_of(const Scene& scene) {
   return setting;
 }
 
-const GarmentSetting* stiffest(const SceneSetting& setting) {
+namespace {
+
+/// The entry with the smallest `key`; null for none.
+template <class T, class Key> const T* least(const std::vector<T>& entries, const Key& key) {
   const auto found =
-      std::min_element(setting.garments.begin(), setting.garments.end(),
-                       [](const GarmentSetting& a, const GarmentSetting& b) { return a.step_limit < b.step_limit; });
-  return found == setting.garments.end() ? nullptr : &*found;
+      std::min_element(entries.begin(), entries.end(), [&](const T& a, const T& b) { return key(a) < key(b); });
+  return found == entries.end() ? nullptr : &*found;
 }
 
-const ProxySetting* fastest(const SceneSetting& setting, double contact_offset) {
-  const auto found = std::max_element(
-      setting.proxies.begin(), setting.proxies.end(), [&](const ProxySetting& a, const ProxySetting& b) {
-        return a.speed / (a.radius + contact_offset) < b.speed / (b.radius + contact_offset);
-      });
-  return found == setting.proxies.end() ? nullptr : &*found;
+} // namespace
+
+double least_gap(const SceneSetting& setting) {
+  const GarmentSetting* found = least(setting.garments, [](const GarmentSetting& g) { return g.gap; });
+  return found ? found->gap : 0.0;
+}
+
+const GarmentSetting* stiffest(const SceneSetting& setting) {
+  return least(setting.garments, [](const GarmentSetting& g) { return g.step_limit; });
+}
+
+const GarmentSetting* coarsest(const SceneSetting& setting) {
+  return least(setting.garments, [](const GarmentSetting& g) { return -g.largest_cell; });
+}
+
+const ProxySetting* fastest(const SceneSetting& setting) {
+  const double gap = least_gap(setting);
+  return least(setting.proxies, [gap](const ProxySetting& p) { return -p.speed / (p.radius + gap); });
 }
 
 const ProxySetting* thinnest(const SceneSetting& setting) {
-  const auto found = std::min_element(setting.proxies.begin(), setting.proxies.end(),
-                                      [](const ProxySetting& a, const ProxySetting& b) { return a.radius < b.radius; });
-  return found == setting.proxies.end() ? nullptr : &*found;
+  return least(setting.proxies, [](const ProxySetting& p) { return p.radius; });
 }
 
 StartOverlap start_overlap(const Scene& scene, std::span<const std::vector<Vec3>> garment_positions) {

@@ -14,6 +14,7 @@ struct GarmentSetting {
   std::string name;
   double step_limit = 0.0;     ///< s, the largest step of mass_spring (step_bound.h)
   double stiffest_cell = 0.0;  ///< m: square cells of this side and fabric vibrate as fast as the garment does
+  double gap = 0.0;            ///< m that particles keep from colliders
   double largest_cell = 0.0;   ///< m, the longest edge along warp or weft at rest
   double mass_ratio = 1.0;     ///< of the heaviest particle that moves to the lightest
   bool only_particles = false; ///< meet colliders: edges and triangles are not asked
@@ -35,10 +36,14 @@ struct SceneSetting {
 SceneSetting setting_of(const Scene& scene);
 inline constexpr int k_most_moments = 2000;
 
-/// Of the garments, the one with the smallest step limit; of the proxies, the one that is fastest for its radius with
-/// what the cloth keeps from it, and the thinnest. Null where there are none.
+/// m, the least of the garments'.
+double least_gap(const SceneSetting& setting);
+
+/// Of the garments, the one with the smallest step limit, and the one with the largest cell; of the proxies, the one
+/// that is fastest for its radius with the least gap, and the thinnest. Null where there are none.
 const GarmentSetting* stiffest(const SceneSetting& setting);
-const ProxySetting* fastest(const SceneSetting& setting, double contact_offset);
+const GarmentSetting* coarsest(const SceneSetting& setting);
+const ProxySetting* fastest(const SceneSetting& setting);
 const ProxySetting* thinnest(const SceneSetting& setting);
 
 /// How deep the deepest particle is inside a proxy when the motion begins.

@@ -23,13 +23,10 @@ void check_step(const SceneDescription& description, const SceneSetting& setting
                                 substeps_for(worst->step_limit, description)));
 }
 
-void check_speed(const SceneDescription& description, const std::vector<cloth::Garment>& garments,
-                 const SceneSetting& setting, std::vector<std::string>& outside) {
-  double offset = garments.front().fabric.contact_offset();
-  for (const cloth::Garment& garment : garments) offset = std::min(offset, garment.fabric.contact_offset());
-  const ProxySetting* worst = fastest(setting, offset);
+void check_speed(const SceneDescription& description, const SceneSetting& setting, std::vector<std::string>& outside) {
+  const ProxySetting* worst = fastest(setting);
   if (!worst) return;
-  const double safe_way = worst->radius + offset;
+  const double safe_way = worst->radius + least_gap(setting);
   // What plan_substeps would add is there already.
   const double step = description.adaptive_substeps
                           ? std::min(setting.step, 1.0 / (description.frames_per_second *
@@ -44,13 +41,11 @@ void check_speed(const SceneDescription& description, const std::vector<cloth::G
 }
 
 /// A rounded tip fits between four particles when it is thinner than half of the cell's diagonal.
-void check_cells(const std::vector<cloth::Garment>& garments, const SceneSetting& setting,
-                 std::vector<std::string>& outside) {
+void check_cells(const SceneSetting& setting, std::vector<std::string>& outside) {
   const ProxySetting* thin = thinnest(setting);
   if (!thin) return;
-  for (std::size_t g = 0; g < garments.size(); ++g) {
-    const GarmentSetting& garment = setting.garments[g];
-    const double safe_cell = std::numbers::sqrt2 * (thin->radius + garments[g].fabric.contact_offset());
+  for (const GarmentSetting& garment : setting.garments) {
+    const double safe_cell = std::numbers::sqrt2 * (thin->radius + garment.gap);
     if (!garment.only_particles || garment.largest_cell <= safe_cell) continue;
     outside.push_back(fmt::format("{} has cells of up to {:.3g} mm, and only their corners are kept from {} of {:.3g} "
                                   "mm: make them {:.3g} mm or less, or use xpbd on rows and columns against proxies",
@@ -62,19 +57,17 @@ void check_cells(const std::vector<cloth::Garment>& garments, const SceneSetting
 
 } // namespace
 
-std::vector<std::string> outside_safe_region(const SceneDescription& description,
-                                             const std::vector<cloth::Garment>& garments, const SceneSetting& setting) {
+std::vector<std::string> outside_safe_region(const SceneDescription& description, const SceneSetting& setting) {
   std::vector<std::string> outside;
-  if (garments.empty()) return outside;
   check_step(description, setting, outside);
-  check_speed(description, garments, setting, outside);
-  check_cells(garments, setting, outside);
+  check_speed(description, setting, outside);
+  check_cells(setting, outside);
   return outside;
 }
 
 std::string warning_of(const Scene& scene) {
   if (scene.garments.empty()) return "";
-  const auto outside = outside_safe_region(scene.description, scene.garments, setting_of(scene));
+  const auto outside = outside_safe_region(scene.description, setting_of(scene));
   return fmt::format("{}", fmt::join(outside, "; "));
 }
 

@@ -13,9 +13,7 @@ namespace tutu::app {
 ///  - a proxy that goes farther against the cloth in a substep than it is thick, where no substeps are added, or where
 ///    as many as may be are not enough;
 ///  - cells that a proxy fits through, where only particles meet it.
-/// `garments` are the scene's.
-std::vector<std::string> outside_safe_region(const SceneDescription& description,
-                                             const std::vector<cloth::Garment>& garments, const SceneSetting& setting);
+std::vector<std::string> outside_safe_region(const SceneDescription& description, const SceneSetting& setting);
 
 /// One line of all of them for a person; "" for none.
 std::string warning_of(const Scene& scene);
