@@ -9,7 +9,7 @@
 namespace tutu::app {
 namespace {
 
-constexpr int k_width = 860, k_height = 560; // pixels
+constexpr int k_width = 900, k_height = 560; // pixels
 constexpr std::size_t k_line = 95;           // characters under the chart
 constexpr double k_text_up = 0.28;           // of a cell: a dot in the middle does not hide it
 
@@ -46,8 +46,8 @@ std::string script_of(const CellChart& chart) {
   const std::size_t columns = chart.x_values.size(), rows = chart.y_values.size();
   std::string text = fmt::format(
       "set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\nset xrange [-0.5:{}]\nset yrange "
-      "[-0.5:{}]\nset xtics ({}) noenhanced\nset ytics ({}) noenhanced\nset tics out nomirror\nset key outside right "
-      "top noenhanced\n",
+      "[-0.5:{}]\nset xtics ({}) noenhanced\nset ytics ({}) noenhanced\nset tics out nomirror\n"
+      "set rmargin at screen 0.73\nset key at screen 0.75,0.93 left top Left reverse samplen 1.5 noenhanced\n",
       gnuplot_text(chart.title), gnuplot_text(chart.x), gnuplot_text(chart.y), static_cast<double>(columns) - 0.5,
       static_cast<double>(rows) - 0.5, tics_of(chart.x_values), tics_of(chart.y_values));
   const std::vector<std::string> under = lines_of(chart.subtitle);

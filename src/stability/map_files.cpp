@@ -60,7 +60,8 @@ ChartCell outcome_cell(const MapCell& cell) {
   const double share = static_cast<double>(cell.failed()) / cell.starts;
   const std::size_t worst = index_of(cell.worst());
   return {blend(k_held, k_outcome_colours[worst], k_palest + (1.0 - k_palest) * share),
-          fmt::format("{} {}/{}", k_outcome_letters[worst], cell.failed(), cell.starts)};
+          share < 1.0 ? fmt::format("{} {}/{}", k_outcome_letters[worst], cell.failed(), cell.starts)
+                      : std::string(1, k_outcome_letters[worst])};
 }
 
 /// From dark blue (small) to yellow (large), in lightness alone a scale too [Nunez, Anderton, Renslow 2018, cividis].

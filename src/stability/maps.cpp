@@ -85,7 +85,7 @@ struct Maker {
 /// Closed form: the largest step of mass_spring for a patch made of each of `values`.
 void add_bound(StabilityMap& map, const std::function<Patch(double value)>& patch) {
   for (const double value : map.x.values) map.bound.push_back(largest_stable_step(garment_of(patch(value))));
-  map.bound_name = "from the largest eigenvalue";
+  map.bound_name = "by largest eigenvalue";
 }
 
 void add_outcome(MapCell& cell, Outcome outcome) { ++cell.outcomes[index_of(outcome)]; }

@@ -153,7 +153,8 @@ TEST(StabilityMaps, ACellsTextTellsWhatItsColourTells) {
   const CellChart chart = chart_of(run_made_up(), {});
   ASSERT_EQ(chart.cells.size(), 12u);
   EXPECT_EQ(chart.cells[0].text, "");
-  EXPECT_EQ(chart.cells[11].text, "T 3/3");
+  EXPECT_EQ(chart.cells[10].text, "T 1/3");
+  EXPECT_EQ(chart.cells[11].text, "T") << "all of them";
   EXPECT_NE(chart.cells[10].colour, chart.cells[11].colour) << "one of three is paler than all";
   ASSERT_EQ(chart.marks.size(), 1u);
   EXPECT_DOUBLE_EQ(chart.marks[0].x, 1.0);
