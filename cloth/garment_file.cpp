@@ -133,18 +133,12 @@ Fabric with_keys_of(const JsonValue& json, Fabric fabric) {
   return fabric;
 }
 
-Fabric read_fabric_file(const fs::path& file) {
-  const JsonValue json = JsonValue::read(file);
-  json.only_keys({"source", "density", "stretch", "shear", "bend", "bend_springs", "drag", "thickness", "clearance"});
-  return with_keys_of(json, {});
-}
-
-Fabric read_fabric(const JsonValue& json) {
-  if (json.is_string()) return read_fabric_file(fabric_file(json));
+Fabric fabric_of(const JsonValue& json) {
+  if (json.is_string()) return read_fabric(fabric_file(json));
   if (!json.is_object()) throw json.error("the name of a fabric, a path that ends in .json, or an object");
   json.only_keys({"base", "density", "stretch", "shear", "bend", "bend_springs", "drag", "thickness", "clearance"});
   const auto base = json.find("base");
-  return with_keys_of(json, base ? read_fabric_file(fabric_file(*base)) : Fabric{});
+  return with_keys_of(json, base ? read_fabric(fabric_file(*base)) : Fabric{});
 }
 
 /// "rows": 0 or [0, 2]; negative numbers count from the end.
@@ -187,6 +181,12 @@ Attachment read_attachment(const JsonValue& json) {
 
 } // namespace
 
+Fabric read_fabric(const fs::path& file) {
+  const JsonValue json = JsonValue::read(file);
+  json.only_keys({"source", "density", "stretch", "shear", "bend", "bend_springs", "drag", "thickness", "clearance"});
+  return with_keys_of(json, {});
+}
+
 GarmentDescription read_garment(const std::filesystem::path& file) {
   const JsonValue json = JsonValue::read(file);
   json.only_keys({"name", "shape", "fabric", "attachments", "colour"});
@@ -194,7 +194,7 @@ GarmentDescription read_garment(const std::filesystem::path& file) {
   description.file = file.string();
   description.name = json.has("name") ? json.at("name").string() : file.stem().string();
   description.shape = read_shape(json.at("shape"));
-  if (const auto fabric = json.find("fabric")) description.fabric = read_fabric(*fabric);
+  if (const auto fabric = json.find("fabric")) description.fabric = fabric_of(*fabric);
   if (const auto attachments = json.find("attachments"))
     for (const JsonValue& item : attachments->items()) description.attachments.push_back(read_attachment(item));
   if (const auto colour = json.find("colour")) {

@@ -14,4 +14,7 @@ namespace tutu::cloth {
 /// above.
 GarmentDescription read_garment(const std::filesystem::path& file);
 
+/// A fabric file. Throws like read_garment.
+Fabric read_fabric(const std::filesystem::path& file);
+
 } // namespace tutu::cloth

@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   add_fit(app, status);
   add_inspect(app, status);
   add_validate(app, status);
+  add_stability(app, status);
   add_mannequin(app, status);
   add_bench(app, status);
   add_cell(app, status);

@@ -265,17 +265,29 @@ std::vector<AnalyticFigure> energy(const StabilitySetup& setup) {
   return {{"growth of energy, of what was lost", "%", 100.0 * greatest_rise(energies) / lost, 0.0, 0.1}};
 }
 
+namespace {
+
+std::vector<AnalyticFigure> slopes(const StabilitySetup& setup) {
+  std::vector<AnalyticFigure> figures;
+  for (int tenth = 1; tenth <= 10; ++tenth) {
+    const std::vector<AnalyticFigure> more = slope(0.1 * tenth, setup);
+    figures.insert(figures.end(), more.begin(), more.end());
+  }
+  return figures;
+}
+
+} // namespace
+
 const std::vector<AnalyticFamily>& analytic_families() {
   static const std::vector<AnalyticFamily> families = {
       {"drop", "free fall, and a sheet on a slope about the angle of friction",
        [](const StabilitySetup& setup) {
          std::vector<AnalyticFigure> figures = free_fall(setup);
-         for (int tenth = 1; tenth <= 10; ++tenth) {
-           const std::vector<AnalyticFigure> more = slope(0.1 * tenth, setup);
-           figures.insert(figures.end(), more.begin(), more.end());
-         }
+         const std::vector<AnalyticFigure> more = slopes(setup);
+         figures.insert(figures.end(), more.begin(), more.end());
          return figures;
        }},
+      {"slope", "the slopes of drop alone", slopes},
       {"pendulum", "period and energy of a swing", pendulum},
       {"catenary", "the sag of a hanging band", catenary},
       {"hang", "how far a sheet gives by its own weight", hang},

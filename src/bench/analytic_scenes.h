@@ -3,6 +3,8 @@
 
 #include "src/bench/stability_run.h"
 
+#include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -15,6 +17,9 @@ struct AnalyticFigure {
 
   bool passed() const; ///< measured is within tolerance of expected; false for what is no number
 };
+
+/// The tolerance of a figure that nothing is held against.
+inline constexpr double k_measured_only = std::numeric_limits<double>::infinity();
 
 /// A loose sheet in air without drag: where it is after half a second, how fast, and whether it kept its shape.
 std::vector<AnalyticFigure> free_fall(const StabilitySetup& setup);
@@ -39,7 +44,7 @@ std::vector<AnalyticFigure> energy(const StabilitySetup& setup);
 /// By the name of the command line.
 struct AnalyticFamily {
   std::string name, what;
-  std::vector<AnalyticFigure> (*run)(const StabilitySetup& setup);
+  std::function<std::vector<AnalyticFigure>(const StabilitySetup& setup)> run;
 };
 const std::vector<AnalyticFamily>& analytic_families();
 

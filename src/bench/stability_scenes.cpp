@@ -80,67 +80,84 @@ double soft_ramp(double t, double from, double to) {
 
 } // namespace
 
-StabilityScene fast_leg(double speed, std::uint64_t seed) {
-  constexpr double k_height = 0.6, k_top = 1.6, k_radius = 0.06;
+StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed) {
+  constexpr double k_height = 0.6, k_top = 1.6;
   // 0.3 m below the held row: at the end sqrt(0.3^2 + 0.25^2) = 0.39 m of the sheet lead to the leg, and what hangs
   // beyond keeps it there, so that the sheet need not slip off around its hem.
   static constexpr double k_leg_y = k_top - 0.3;
   constexpr double k_from = -0.3, k_to = 0.25, k_begin = 0.1;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = fmt::format("fast-leg {:g} m/s", speed);
+  scene.name = fmt::format("fast-leg {:g} m/s", leg.speed);
   scene.garment = hanging_sheet(24, 24, 0.6, k_height, k_top);
+  scene.garment.fabric.thickness = leg.thickness;
   scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
-  const double end = k_begin + (k_to - k_from) / speed;
+  const double end = k_begin + (k_to - k_from) / leg.speed;
   scene.seconds = end + 3.0;
-  scene.pose = [end, pinned = pins_at_rest(scene.garment)](double t, std::vector<Capsule>& capsules,
-                                                           std::vector<Vec3>& pins) {
+  scene.pose = [end, radius = leg.radius, pinned = pins_at_rest(scene.garment)](
+                   double t, std::vector<Capsule>& capsules, std::vector<Vec3>& pins) {
     const double z = std::lerp(k_from, k_to, ramp(t, k_begin, end));
-    capsules = {{{-0.5, k_leg_y, z}, {0.5, k_leg_y, z}, k_radius}};
+    capsules = {{{-0.5, k_leg_y, z}, {0.5, k_leg_y, z}, radius}};
+    pins = pinned;
+  };
+  return scene;
+}
+
+StabilityScene fast_leg(double speed, std::uint64_t seed) { return fast_leg(FastLeg{speed}, seed); }
+
+StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed) {
+  constexpr int k_particles = 6; // a side: five cells, so that the middle of the sheet is the middle of a cell
+  constexpr double k_speed = 1.0, k_begin = 0.1;
+  const double size = (k_particles - 1) * cells.cell;
+  const double top = size + 1.0, from = -cells.radius - 0.05, to = 0.25 * size, end = k_begin + (to - from) / k_speed;
+  std::mt19937_64 random(seed);
+  StabilityScene scene;
+  scene.name =
+      fmt::format("coarse-cells {:g} {}", cells.cell / (2.0 * cells.radius), cells.along_warp ? "along" : "across");
+  scene.garment = hanging_sheet(k_particles, k_particles, size, size, top);
+  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.seconds = end + 2.0;
+  const double middle = top - 0.5 * size;
+  const Vec3 a = cells.along_warp ? Vec3(0, top - 0.3 * size, 0) : Vec3(-0.7 * size, middle, 0);
+  const Vec3 b = cells.along_warp ? Vec3(0, top - 1.3 * size, 0) : Vec3(0.7 * size, middle, 0);
+  scene.pose = [=, radius = cells.radius, pinned = pins_at_rest(scene.garment)](
+                   double t, std::vector<Capsule>& capsules, std::vector<Vec3>& pins) {
+    const Vec3 at(0, 0, std::lerp(from, to, ramp(t, k_begin, end)));
+    capsules = {{a + at, b + at, radius}};
     pins = pinned;
   };
   return scene;
 }
 
 StabilityScene coarse_cells(double cells, bool along_warp, std::uint64_t seed) {
-  constexpr int k_particles = 6; // a side: five cells, so that the middle of the sheet is the middle of a cell
-  constexpr double k_radius = 0.03, k_speed = 1.0, k_begin = 0.1;
-  const double size = (k_particles - 1) * cells * 2.0 * k_radius;
-  const double top = size + 1.0, from = -k_radius - 0.05, to = 0.25 * size, end = k_begin + (to - from) / k_speed;
+  CoarseCells what;
+  what.cell = cells * 2.0 * what.radius;
+  what.along_warp = along_warp;
+  return coarse_cells(what, seed);
+}
+
+StabilityScene start_inside(const StartInside& arm, std::uint64_t seed) {
+  const double tube_radius = std::max(0.12, 2.4 * arm.radius), off_the_wall = arm.radius - arm.depth;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = fmt::format("coarse-cells {:g} {}", cells, along_warp ? "along" : "across");
-  scene.garment = hanging_sheet(k_particles, k_particles, size, size, top);
+  scene.name = arm.axis_within ? "start-inside, arm within" : "start-inside, arm outside";
+  scene.garment = tube(20, 32, {1.5, tube_radius, 1.0, tube_radius}, false);
   scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
-  scene.seconds = end + 2.0;
-  const double middle = top - 0.5 * size;
-  const Vec3 a = along_warp ? Vec3(0, top - 0.3 * size, 0) : Vec3(-0.7 * size, middle, 0);
-  const Vec3 b = along_warp ? Vec3(0, top - 1.3 * size, 0) : Vec3(0.7 * size, middle, 0);
-  scene.pose = [=, pinned = pins_at_rest(scene.garment)](double t, std::vector<Capsule>& capsules,
-                                                         std::vector<Vec3>& pins) {
-    const Vec3 at(0, 0, std::lerp(from, to, ramp(t, k_begin, end)));
-    capsules = {{a + at, b + at, k_radius}};
+  const double angle = 2.0 * k_pi * unit(random);
+  const double from_axis = tube_radius + (arm.axis_within ? -off_the_wall : off_the_wall);
+  const Vec3 foot(from_axis * std::sin(angle), 0, from_axis * std::cos(angle));
+  scene.pose = [foot, radius = arm.radius, pinned = pins_at_rest(scene.garment)](double, std::vector<Capsule>& capsules,
+                                                                                 std::vector<Vec3>& pins) {
+    capsules = {{foot + Vec3(0, 1.35, 0), foot + Vec3(0, 0.8, 0), radius}};
     pins = pinned;
   };
   return scene;
 }
 
 StabilityScene start_inside(bool axis_within, std::uint64_t seed) {
-  constexpr double k_radius = 0.05, k_tube_radius = 0.12, k_off_the_wall = 0.02;
-  std::mt19937_64 random(seed);
-  StabilityScene scene;
-  scene.name = axis_within ? "start-inside, arm within" : "start-inside, arm outside";
-  scene.garment = tube(20, 32, {1.5, k_tube_radius, 1.0, k_tube_radius}, false);
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
-  const double angle = 2.0 * k_pi * unit(random);
-  const double from_axis = k_tube_radius + (axis_within ? -k_off_the_wall : k_off_the_wall);
-  const Vec3 foot(from_axis * std::sin(angle), 0, from_axis * std::cos(angle));
-  scene.pose = [foot, pinned = pins_at_rest(scene.garment)](double, std::vector<Capsule>& capsules,
-                                                            std::vector<Vec3>& pins) {
-    capsules = {{foot + Vec3(0, 1.35, 0), foot + Vec3(0, 0.8, 0), k_radius}};
-    pins = pinned;
-  };
-  return scene;
+  StartInside arm;
+  arm.axis_within = axis_within;
+  return start_inside(arm, seed);
 }
 
 StabilityScene teleport(bool told, std::uint64_t seed) {

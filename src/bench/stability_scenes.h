@@ -45,15 +45,34 @@ struct StabilityScene {
   StabilityLimits limits;
 };
 
-/// A capsule of 6 cm goes through a sheet of 0.6 m that hangs from its upper row, along its normal, at `speed` m/s, and
-/// stops where the sheet still reaches around it.
+/// A capsule goes through a sheet of 0.6 m that hangs from its upper row, along its normal, and stops where the sheet
+/// still reaches around it.
+struct FastLeg {
+  double speed = 1.0;                           ///< m/s
+  double radius = 0.06;                         ///< m
+  double thickness = cloth::Fabric().thickness; ///< m, of the cloth
+};
+StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed);
 StabilityScene fast_leg(double speed, std::uint64_t seed);
 
-/// A capsule of 3 cm pushes at 1 m/s into a hanging sheet whose cells are `cells` times its diameter, at the middle of
-/// a cell, lying across the warp (or, upright, along it).
+/// A capsule pushes at 1 m/s into a hanging sheet of five by five cells, at the middle of a cell, lying across the warp
+/// (or, upright, along it).
+struct CoarseCells {
+  double cell = 0.06;   ///< m, a side
+  double radius = 0.03; ///< m
+  bool along_warp = false;
+};
+StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed);
+/// The same with a capsule of 3 cm, the cells `cells` times as large as its diameter.
 StabilityScene coarse_cells(double cells, bool along_warp, std::uint64_t seed);
 
-/// An arm stands in the wall of a tube at frame 0, 3 cm deep of its 5, with its axis within the tube or outside it.
+/// An arm stands in the wall of a tube at frame 0 with its axis within the tube or outside it.
+struct StartInside {
+  double radius = 0.05; ///< m
+  double depth = 0.03;  ///< m, how far its surface is through the wall
+  bool axis_within = true;
+};
+StabilityScene start_inside(const StartInside& arm, std::uint64_t seed);
 StabilityScene start_inside(bool axis_within, std::uint64_t seed);
 
 /// A skirt over hips and two legs, all of which jump by 5 m in one frame: told to the solver or not.

@@ -10,6 +10,7 @@
 #include "src/scene/posed_body.h"
 #include "src/scene/run_stats.h"
 #include "src/scene/scene_player.h"
+#include "src/stability/warning.h"
 #include "src/viewer/viewer.h"
 
 #include <algorithm>
@@ -209,6 +210,8 @@ int run(const Options& options) {
   if (options.fixed_substeps) scene.description.adaptive_substeps = false;
   if ((options.overlay || options.worst) && scene.proxies.empty())
     throw InputError(scene.description.file.string(), "/proxies", "none", "proxies to show the error of");
+  if (const std::string warning = warning_of(scene); !warning.empty())
+    fmt::print(stderr, "warning: outside of what is safe (see tutu stability): {}\n", warning);
   const auto start = draped_start(scene);
   if (!start) return k_not_met;
   if (headless && options.worst) {

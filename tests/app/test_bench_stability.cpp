@@ -1,5 +1,8 @@
 // `tutu bench` on the scenes of stability and of formulas.
+#include "rig/error.h"
 #include "rig/file_io.h"
+#include "src/bench/convergence.h"
+#include "src/bench/cusick.h"
 #include "src/bench/stability_report.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
@@ -47,6 +50,36 @@ TEST(BenchStability, AFormulaSceneWritesItsFigures) {
   const nlohmann::json& elongation = figures.at("figures").at(0);
   EXPECT_NEAR(elongation.at("measured").get<double>(), elongation.at("expected").get<double>(),
               elongation.at("tolerance").get<double>());
+}
+
+TEST(BenchStability, FabricsDrapeWithinTheirPublishedBands_slow) {
+  std::string output;
+  const nlohmann::json figures = figures_of({"cusick"}, 0, &output);
+  ASSERT_EQ(figures.at("figures").size(), 4u);
+  for (const char* fabric : {"silk, published 20 to 40 %", "cotton, published 60 to 76 %", "wool, published 40 to 70 %",
+                             "denim, published 70 to 90 %"})
+    EXPECT_THAT(output, HasSubstr(fabric));
+}
+
+TEST(BenchStability, AFabricWithoutABandIsMeasuredOnly) {
+  const auto folder = test::scratch_folder();
+  write_file(folder / "rag.json", R"({"density": 0.1, "bend": 0})");
+  app::StabilitySetup setup;
+  setup.solver.kind = cloth::SolverKind::mass_spring;
+  const std::vector<app::AnalyticFigure> figures = app::cusick(folder, setup);
+  ASSERT_EQ(figures.size(), 1u);
+  EXPECT_THAT(figures[0].what, HasSubstr("rag, no published band"));
+  EXPECT_THROW(app::cusick(folder / "nowhere", setup), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(BenchStability, TheErrorInTheStepIsOfFirstOrder) {
+  for (const cloth::SolverKind kind : {cloth::SolverKind::mass_spring, cloth::SolverKind::xpbd}) {
+    app::StabilitySetup setup;
+    setup.solver.kind = kind;
+    const std::vector<app::AnalyticFigure> figures = app::convergence_in_step(setup);
+    EXPECT_NEAR(figures.back().measured, 1.0, 0.15) << cloth::name_of(kind);
+  }
 }
 
 TEST(BenchStability, WhatDoesNotHoldIsStatus1AndSaid) {
