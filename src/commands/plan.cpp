@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   ChartOptions chart; ///< of which the scene and the reference are asked for here
-  double error_mm = 0.0, stretch_percent = 3.0;
+  double error_mm = 0.0, stretch_percent = 5.0;
   std::optional<double> ms;
   std::string error = "all", out, json;
   std::optional<int> frames;
@@ -42,6 +42,7 @@ PlanGoal goal_of(const Options& options, const Scene& scene) {
   goal.most_stretch = 1e-2 * options.stretch_percent;
   goal.frames = std::min(options.frames.value_or(k_most_frames), frames_of(scene));
   goal.starts = options.starts;
+  goal.compares_bad = options.ms.has_value();
   if (goal.frames == 0) throw InputError(scene.description.file.string(), "/motion", "one pose", "a motion");
   return goal;
 }
@@ -77,7 +78,7 @@ PlanRecord search(const Scene& scene, PlanBench& bench, const Options& options) 
   PlanMeasurer measurer;
   measurer.measure = [&](const PlanLevels& levels) {
     const PlanBench::Measured measured = bench.measure(model(levels));
-    record.errors[levels] = measured.errors;
+    record.tried[levels] = record.errors[levels] = measured.errors;
     bar.tick(++done);
     return PlanFigures{excess_of(measured.errors, bench.limits()), measured.cost.median};
   };
@@ -95,9 +96,9 @@ PlanRecord search(const Scene& scene, PlanBench& bench, const Options& options) 
   };
   measurer.go_on = [] { return !interrupted(); };
   record.result = find_plan(axes, measurer, options.ms);
-  PlanLevels own;
-  for (const PlanAxis& axis : axes) own.push_back(axis.own);
-  if (!interrupted()) record.cost = bench.compare(model(record.result.levels), model(own), k_final_pairs);
+  PlanModel own; // with the proxies that are out of reach
+  own.setting = setting_of(scene.description);
+  if (!interrupted()) record.cost = bench.compare(model(record.result.levels), own, k_final_pairs);
   return record;
 }
 
@@ -167,7 +168,7 @@ int run(Options options) {
   fmt::print("{}wrote {}\n", plan_text(scene.name(), record, goal, bench.limits(), options.ms), options.out);
   if (!options.json.empty()) {
     nlohmann::ordered_json json = plan_json(scene.name(), record, goal, bench.limits(), options.ms);
-    json["own"] = {{"body_mm", 1e3 * bench.own().body}, {"stretch_p99", bench.own().stretch}};
+    json["own"] = errors_json(bench.own());
     json["out"] = options.out;
     write_file(options.json, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
   }

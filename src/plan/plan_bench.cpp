@@ -2,17 +2,20 @@
 
 #include "src/scene/posed_body.h"
 #include "src/scene/session.h"
+#include "src/workers.h"
 
 #include <algorithm>
 #include <fmt/format.h>
 #include <limits>
+#include <thread>
 
 namespace tutu::app {
 namespace {
 
-constexpr int k_guard_starts = 3;  // folds fall one way or the other: one start says little about a drape
-constexpr double k_seldom = 15.0;  // 1/s: how often a quick run is measured against the body
-constexpr double k_hopeless = 4.0; // times what is allowed: such a run is not worth its end
+constexpr int k_guard_starts = 3; // folds fall one way or the other: one start says little about a drape
+constexpr double k_seldom = 15.0; // 1/s: how often a quick run is measured against the body
+constexpr double k_far = 2.0;     // times too deep: not to be helped
+constexpr double k_between = 1.1; // deeper between the frames of a quick run, and from other starts
 constexpr int k_skinned_poses = 20;
 
 PlanCost cost_of(const CellRun& run) {
@@ -69,24 +72,25 @@ PlanBench::PlanBench(const Scene& scene, const PlanGoal& goal, const ReferencePl
   guard_.held = 0; // jitter is not asked for
   if (reference_)
     reference_garments_ = with_setting(scene, reference_setting(scene, plan, reference_->substeps)).garments;
-  const Setting own = setting_of(scene.description);
-  for (int seed = 0; seed < goal_.starts && go_on_(); ++seed)
-    own_runs_.push_back(run_cell(scene, {start_, static_cast<std::uint64_t>(seed)}, {goal_.frames, 0, 0, 1}, false,
-                                 [&](const CellRun&) { return go_on_(); })
-                            .recording);
+  PlanModel own;
+  own.setting = setting_of(scene.description);
+  const std::vector<CellRun> runs = run_starts(scene, own);
+  for (const CellRun& run : runs) {
+    add_body(run, own_);
+    own_runs_.push_back(run.recording);
+  }
   proxies_.emplace(scene, own_runs_);
+  add_guard(scene, own, own_);
 
-  limits_.stretch = goal_.most_stretch;
+  limits_.stretch = std::max(goal_.most_stretch, own_.stretch); // its own cloth is not to blame for the plan
   if (goal_.error == PlanError::body || goal_.error == PlanError::all) limits_.body = goal_.most;
   if (goal_.error == PlanError::trajectory) limits_.trajectory = goal_.most;
   if (goal_.error == PlanError::drape) limits_.drape = goal_.most;
-  const PlanModel model{own, {}, ProxiesKept::all};
-  add_body(run_body(scene, model, 0, 1, true), own_);
-  add_guard(scene, model, own_);
-  limits_.stretch = std::max(limits_.stretch, own_.stretch); // its own cloth is not to blame for the plan
-  if (goal_.error != PlanError::all) return;
-  limits_.trajectory = own_.trajectory + goal_.most;
-  limits_.drape = own_.drape + goal_.most;
+  if (goal_.error == PlanError::all) {
+    limits_.trajectory = own_.trajectory + goal_.most;
+    limits_.drape = own_.drape + goal_.most;
+  }
+  hopeless_ = goal_.compares_bad ? std::numeric_limits<double>::infinity() : std::max(1.0, excess_of(own_, limits_));
 }
 
 Scene PlanBench::scene_of(const PlanModel& model) {
@@ -108,9 +112,13 @@ PlanBench::Measured PlanBench::measure(const PlanModel& model) {
   Measured result;
   // The guard first: it is short, and what it refuses needs no more.
   add_guard(scene, model, result.errors);
+  if (excess_of(result.errors, limits_) > hopeless_) return result;
   const int every = std::max(1, static_cast<int>(scene.description.frames_per_second / k_seldom));
-  const CellRun run = run_body(scene, model, 0, every, false);
+  const double most = limits_.body ? k_far * hopeless_ * *limits_.body : std::numeric_limits<double>::infinity();
+  const CellRun run = run_cell(scene, {start_of(model), 0}, {goal_.frames, 0, 0, every}, true,
+                               [&](const CellRun& so_far) { return so_far.deepest_in_body <= most && go_on_(); });
   add_body(run, result.errors);
+  result.errors.body *= k_between;
   result.cost = cost_of(run);
   return result;
 }
@@ -119,8 +127,7 @@ PlanErrors PlanBench::verify(const PlanModel& model) {
   const Scene scene = scene_of(model);
   PlanErrors errors;
   add_guard(scene, model, errors);
-  for (int seed = 0; seed < goal_.starts && excess_of(errors, limits_) <= 1.0 && go_on_(); ++seed)
-    add_body(run_body(scene, model, static_cast<std::uint64_t>(seed), 1, true), errors);
+  for (const CellRun& run : run_starts(scene, model)) add_body(run, errors);
   return errors;
 }
 
@@ -169,17 +176,21 @@ void PlanBench::add_guard(const Scene& scene, const PlanModel& model, PlanErrors
   }
 }
 
-CellRun PlanBench::run_body(const Scene& scene, const PlanModel& model, std::uint64_t seed, int every,
-                            bool to_the_end) {
-  const double most =
-      limits_.body && !to_the_end ? k_hopeless * *limits_.body : std::numeric_limits<double>::infinity();
-  return run_cell(scene, {start_of(model), seed}, {goal_.frames, 0, 0, every}, true,
-                  [&](const CellRun& run) { return run.deepest_in_body <= most && go_on_(); });
+std::vector<CellRun> PlanBench::run_starts(const Scene& scene, const PlanModel& model) {
+  const GarmentPositions start = start_of(model);
+  std::vector<CellRun> runs(static_cast<std::size_t>(goal_.starts));
+  Workers workers(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, goal_.starts));
+  workers.for_each(runs.size(), [&](std::size_t seed) {
+    runs[seed] =
+        run_cell(scene, {start, seed}, {goal_.frames, 0, 0, 1}, true, [&](const CellRun&) { return go_on_(); });
+  });
+  return runs;
 }
 
 void PlanBench::add_body(const CellRun& run, PlanErrors& errors) {
   errors.body = std::max(errors.body, run.deepest_in_body);
   errors.stretch = std::max(errors.stretch, run.stretch.p99);
+  errors.stretch_max = std::max(errors.stretch_max, run.stretch.max);
   if (errors.trouble.empty()) errors.trouble = trouble_of(run);
 }
 

@@ -1,5 +1,6 @@
 #include "src/plan/plan_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -13,6 +14,9 @@ Value substeps_value(int substeps) {
 }
 Value passes_value(int passes) {
   return {std::to_string(passes), [=](PlanModel& m) { m.setting.passes = passes; }};
+}
+Value margin_value(double mm) {
+  return {mm == 0.0 ? "none" : fmt::format("{:g} mm", mm), [=](PlanModel& m) { m.margin = 1e-3 * mm; }};
 }
 Value resolution_value(double times) {
   return {times == 1.0 ? "the scene's" : fmt::format("{:g} x the cells a side", times),
@@ -34,6 +38,14 @@ Value switch_value(bool Setting::*member, bool on) {
 
 std::vector<PlanChoice> choices_of(const SceneDescription& d, bool fits, bool regrids) {
   std::vector<PlanChoice> choices;
+  if (d.proxies) {
+    PlanChoice margin{"proxy margin", {}, 0, true};
+    for (const double mm : {0.0, 1.0, 2.0, 3.0}) margin.values.push_back(margin_value(mm));
+    choices.push_back(std::move(margin));
+  }
+  PlanChoice passes{"passes", {}, d.passes - 1, true}; // cheaper than as many substeps
+  for (int n = 1; n <= std::max(3, d.passes); ++n) passes.values.push_back(passes_value(n));
+  if (d.solver == cloth::SolverKind::xpbd) choices.push_back(std::move(passes));
   // Nobody looks whether a scene needs more of what it does without: where it is off, there is no choice.
   const auto off_if_on = [&](const char* name, bool Setting::*member, bool on) {
     if (on) choices.push_back({name, {switch_value(member, false), switch_value(member, true)}, 1});
@@ -55,10 +67,13 @@ std::vector<PlanChoice> choices_of(const SceneDescription& d, bool fits, bool re
     const auto kept = [](const char* words, ProxiesKept which) {
       return Value{words, [=](PlanModel& m) { m.kept = which; }};
     };
+    // What no cloth can reach is left out of every model: that needs no measuring.
     choices.push_back({"proxies kept",
                        {kept("those that cloth came near to", ProxiesKept::touched),
-                        kept("those in reach of cloth", ProxiesKept::in_reach), kept("all", ProxiesKept::all)},
-                       2});
+                        kept("those in reach of cloth", ProxiesKept::in_reach)},
+                       1,
+                       false,
+                       true});
   }
 
   PlanChoice substeps{"substeps", {}, d.substeps - 1};
@@ -67,11 +82,6 @@ std::vector<PlanChoice> choices_of(const SceneDescription& d, bool fits, bool re
     substeps.values.push_back(substeps_value(static_cast<int>(std::ceil(times * d.substeps)) + (times > 1.5)));
   choices.push_back(std::move(substeps));
 
-  if (d.passes > 1) {
-    PlanChoice passes{"passes", {}, d.passes - 1};
-    for (int n = 1; n <= d.passes; ++n) passes.values.push_back(passes_value(n));
-    choices.push_back(std::move(passes));
-  }
   PlanChoice features{"contact features", {}, 0};
   for (const auto f :
        {cloth::ContactFeatures::particles, cloth::ContactFeatures::automatic, cloth::ContactFeatures::triangles}) {

@@ -20,7 +20,7 @@ struct FittedSet {
 
 /// Which proxies of a set stay.
 enum class ProxiesKept {
-  all,
+  all,      ///< the scene as it is
   in_reach, ///< that any cloth can meet in the motion (garment_reach.h)
   touched   ///< and that cloth came within touching distance of in the scene's own run
 };
@@ -29,6 +29,7 @@ struct PlanModel {
   Setting setting;
   std::optional<FittedSet> fitted; ///< none: the scene's own
   ProxiesKept kept = ProxiesKept::all;
+  double margin = 0.0; ///< m, added to the radius of every proxy
 };
 
 /// One kind of choice; values from the cheapest to the most exact.
@@ -39,9 +40,10 @@ struct PlanChoice {
   };
   std::string name;
   std::vector<Value> values;
-  int own = 0; ///< the scene's
+  int own = 0;                        ///< the scene's
+  bool helps = false, counts = false; ///< PlanAxis
 
-  PlanAxis axis() const { return {static_cast<int>(values.size()), own}; }
+  PlanAxis axis() const { return {static_cast<int>(values.size()), own, helps, counts}; }
 };
 
 /// What is left to choose in this scene, the greatest expected saving first. `fits`: its proxies can be fitted anew;

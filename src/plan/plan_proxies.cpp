@@ -60,7 +60,9 @@ std::vector<proxies::Proxy> PlanProxies::of(const PlanModel& model, const std::f
     const ProxyUse& use = found->second.uses[p];
     const bool stays = model.kept == ProxiesKept::all || (model.kept == ProxiesKept::in_reach && use.in_reach) ||
                        (model.kept == ProxiesKept::touched && use.touched);
-    if (stays) kept.push_back(found->second.proxies[p]);
+    if (!stays) continue;
+    kept.push_back(found->second.proxies[p]);
+    kept.back().radius += model.margin;
   }
   return kept;
 }

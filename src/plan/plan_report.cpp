@@ -26,47 +26,56 @@ struct Row {
 
 std::string cost_text(const PlanCost& cost) { return fmt::format("{:.3f} ({:.3f})", cost.median, cost.p99); }
 
-/// Trials end with why this choice stands where it does.
+/// Why this choice stands where it does: how it came there, and what was refused.
 Row row_of(const PlanRecord& record, std::size_t axis, const PlanLimits& limits) {
   const PlanChoice& choice = record.choices[axis];
   const int level = record.result.levels[axis];
   Row row{choice.name, choice.values[choice.own].words, choice.values[level].words, "", level != choice.own, {}, {}};
-  const auto in_words = [&](const PlanTrial& trial) { return choice.values[trial.to[axis]].words; };
-  std::string refused;
+  std::string came, refused;
+  bool was_elsewhere = false;
   for (const PlanTrial& trial : record.result.trials) {
-    if (trial.axis != static_cast<int>(axis)) continue;
-    const PlanErrors& errors = record.errors.at(trial.to);
-    switch (trial.end) {
-    case PlanTrial::End::kept:
-      if (trial.to[axis] != level) break;
+    const int from = trial.from[axis], to = trial.to[axis];
+    const bool own_trial = trial.axis == static_cast<int>(axis);
+    const PlanErrors& errors = record.tried.at(trial.to);
+    if (trial.end == PlanTrial::End::kept && from != to) {
+      was_elsewhere = true;
+      if (to != level) continue;
       row.errors = errors;
-      row.reason = (trial.cost_ratio ? "good enough: " : "") + worst_of(errors, limits);
-      if (const auto cost = record.costs.find({trial.to, trial.from}); cost != record.costs.end())
-        row.cost = cost->second;
-      break;
-    case PlanTrial::End::not_good:
-      if (trial.to[axis] < trial.from[axis]) refused = in_words(trial) + ": " + worst_of(errors, limits);
-      break;
-    case PlanTrial::End::not_cheaper:
-      refused = fmt::format("{}: takes {:.2f} times the time", in_words(trial), *trial.cost_ratio);
-      break;
+      const PlanChoice& other = record.choices[static_cast<std::size_t>(trial.axis)];
+      if (!own_trial) came = fmt::format("so that {} can be {}", other.name, other.values[trial.to[trial.axis]].words);
+      else if (trial.cost_ratio) came = "good enough: " + worst_of(errors, limits);
+      else
+        came = fmt::format("needed; with {}: {}", choice.values[from].words,
+                           worst_of(record.errors.at(trial.from), limits));
+      const auto cost = record.costs.find({trial.to, trial.from});
+      if (own_trial && cost != record.costs.end()) row.cost = cost->second;
+    } else if (own_trial && trial.end == PlanTrial::End::not_good && to < from) {
+      refused = choice.values[to].words + ": " + worst_of(errors, limits);
+    } else if (own_trial && trial.end == PlanTrial::End::not_cheaper) {
+      refused = fmt::format("{}: takes {:.2f} times the time", choice.values[to].words, *trial.cost_ratio);
     }
   }
-  if (!refused.empty()) row.reason += (row.reason.empty() ? "" : "; ") + refused;
-  if (row.reason.empty()) row.reason = choice.own == 0 ? "the cheapest already" : "not tried";
+  if (came.empty() && was_elsewhere) came = "taken back when the whole was verified";
+  if (came.empty() && refused.empty()) came = choice.own == 0 ? "the cheapest already" : "not tried";
+  row.reason = came + (came.empty() || refused.empty() ? "" : "; ") + refused;
   return row;
 }
 
 ordered_json cost_json(const PlanCost& cost) { return {{"median", cost.median}, {"p99", cost.p99}}; }
 
+} // namespace
+
 ordered_json errors_json(const PlanErrors& e) {
   ordered_json json = {{"body_mm", 1e3 * e.body},
                        {"trajectory_mm", 1e3 * e.trajectory},
                        {"drape_mm", 1e3 * e.drape},
-                       {"stretch_p99", e.stretch}};
+                       {"stretch_p99", e.stretch},
+                       {"stretch_max", e.stretch_max}};
   if (!e.trouble.empty()) json["trouble"] = e.trouble;
   return json;
 }
+
+namespace {
 
 /// Metres in mm; JSON has no infinity.
 ordered_json mm_json(std::optional<double> metres) {
@@ -103,6 +112,8 @@ std::string verdict(const PlanRecord& record, const PlanLimits& limits, std::opt
                      : result.interrupted ? "interrupted; the best so far, not verified: "
                                           : "NOT MET: the stated error cannot be met; the best that was found: ";
   text += worst + "\n";
+  if (errors != record.errors.end())
+    text += fmt::format("no thread in any frame is longer by more than {:.0f} %\n", 1e2 * errors->second.stretch_max);
   if (budget_ms && !result.in_budget)
     text += fmt::format("NOT MET: nothing that was found takes {:g} ms a frame; this takes {:.3f}\n", *budget_ms,
                         result.ms);

@@ -11,6 +11,7 @@ namespace tutu::app {
 struct PlanRecord {
   std::vector<PlanChoice> choices;
   PlanResult result;
+  std::map<PlanLevels, PlanErrors> tried;                             ///< of each model, when it was tried
   std::map<PlanLevels, PlanErrors> errors;                            ///< the worst seen of each model
   std::map<std::pair<PlanLevels, PlanLevels>, PlanBench::Pair> costs; ///< of the first against the second
   std::optional<PlanBench::Pair> cost;                                ///< of the plan against the scene's own
@@ -22,6 +23,8 @@ struct PlanRecord {
 
 /// What the error is, in one sentence that names all limits.
 std::string goal_text(const PlanGoal& goal, const PlanLimits& limits);
+
+nlohmann::ordered_json errors_json(const PlanErrors& errors);
 
 std::string plan_text(const std::string& scene, const PlanRecord& record, const PlanGoal& goal,
                       const PlanLimits& limits, std::optional<double> budget_ms);

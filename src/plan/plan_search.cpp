@@ -18,7 +18,7 @@ public:
     if (const auto own = measured(own_)) result_.own = *own;
     make_good();
     if (is_good(levels_))
-      for (std::size_t axis = 0; axis < axes_.size(); ++axis) make_cheaper(static_cast<int>(axis));
+      for (std::size_t axis = 0; axis < axes_.size(); ++axis) make_cheaper(axis);
     mend();
     if (!is_good(levels_) && !result_.interrupted) { // it looked good and was not
       make_good();
@@ -96,40 +96,86 @@ private:
     }
   }
 
-  void make_cheaper(int axis) {
-    PlanLevels candidate = levels_;
-    int lowest = 0, good = levels_[axis];
-    while (lowest < good) {
-      candidate[axis] = (lowest + good) / 2;
-      const auto figures = measured(candidate);
-      if (!figures) return;
-      if (figures->good()) {
-        good = candidate[axis];
+  /// These levels, or more of what helps; nothing when that is not enough. `axis` itself does not help. First a level
+  /// at a time while it gets less wrong; where that ends too soon (one error falls by this, another by that) all of it,
+  /// then less while that is enough.
+  std::optional<PlanLevels> good_with_help(const PlanLevels& without, std::size_t axis) {
+    std::vector<std::size_t> helpers;
+    for (std::size_t h = 0; h < axes_.size(); ++h)
+      if (axes_[h].helps && h != axis) helpers.push_back(h);
+    PlanLevels levels = without;
+    auto now = measured(levels);
+    while (now && !now->good()) {
+      std::optional<PlanLevels> best;
+      PlanFigures least = *now;
+      for (const std::size_t h : helpers) {
+        if (levels[h] + 1 >= axes_[h].values || least.good()) continue;
+        const PlanLevels more = stepped(levels, h, 1);
+        const auto figures = measured(more);
+        if (!figures) return {};
+        if (figures->excess >= least.excess) continue;
+        best = more;
+        least = *figures;
+      }
+      if (!best) break;
+      levels = *best;
+      now = least;
+    }
+    if (!now || now->good()) return now ? std::optional(levels) : std::nullopt;
+
+    PlanLevels all = without;
+    for (const std::size_t h : helpers) all[h] = axes_[h].values - 1;
+    const auto with_all = measured(all);
+    if (!with_all || !with_all->good()) return {};
+    for (const std::size_t h : helpers)
+      while (all[h] > without[h]) {
+        const auto less = measured(stepped(all, h, -1));
+        if (!less || !less->good()) break;
+        --all[h];
+      }
+    return all;
+  }
+
+  void make_cheaper(std::size_t axis) {
+    PlanLevels good = levels_;
+    int lowest = 0;
+    while (lowest < good[axis]) {
+      PlanLevels candidate = levels_;
+      candidate[axis] = (lowest + good[axis]) / 2;
+      const auto helped = good_with_help(candidate, axis);
+      if (result_.interrupted) return;
+      if (helped) {
+        good = *helped;
       } else {
-        note(axis, candidate, *figures, PlanTrial::End::not_good);
+        note(static_cast<int>(axis), candidate, seen_.at(candidate), PlanTrial::End::not_good);
         lowest = candidate[axis] + 1;
       }
     }
-    if (good == levels_[axis]) return;
-    candidate[axis] = good;
+    if (good == levels_ || !go_on()) return;
+    const double ratio = measurer_->cost_ratio(good, levels_);
     if (!go_on()) return;
-    const double ratio = measurer_->cost_ratio(candidate, levels_);
-    if (!go_on()) return;
-    const bool cheaper = ratio < 1.0 - k_least_saving;
-    note(axis, candidate, seen_.at(candidate), cheaper ? PlanTrial::End::kept : PlanTrial::End::not_cheaper, ratio);
+    const bool cheaper = axes_[axis].counts || ratio < 1.0 - k_least_saving;
+    note(static_cast<int>(axis), good, seen_.at(good), cheaper ? PlanTrial::End::kept : PlanTrial::End::not_cheaper,
+         ratio);
   }
 
-  /// Takes back what does not hold when it is verified: first the one level that is enough, else one on every axis.
+  /// Makes what does not hold when it is verified more exact: by one level that is enough, of what helps if there is
+  /// one, else of what was made cheaper, else of all of that.
   void mend() {
+    const auto enough = [&](std::size_t axis) {
+      const PlanLevels more = stepped(levels_, axis, 1);
+      if (more[axis] >= axes_[axis].values || !verified(more)) return false;
+      note(static_cast<int>(axis), more, seen_.at(more), PlanTrial::End::kept);
+      return true;
+    };
     while (is_good(levels_) && !verified(levels_) && !result_.interrupted) {
+      for (std::size_t axis = 0; axis < axes_.size(); ++axis)
+        if (axes_[axis].helps && enough(axis)) return;
       bool reduced = false;
       for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
         if (levels_[axis] >= own_[axis]) continue;
         reduced = true;
-        const PlanLevels more = stepped(levels_, axis, 1);
-        if (!verified(more)) continue;
-        note(static_cast<int>(axis), more, seen_.at(more), PlanTrial::End::kept);
-        return;
+        if (enough(axis)) return;
       }
       if (!reduced || result_.interrupted) return;
       for (std::size_t axis = 0; axis < axes_.size(); ++axis) levels_[axis] += levels_[axis] < own_[axis];

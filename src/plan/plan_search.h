@@ -18,6 +18,10 @@ namespace tutu::app {
 struct PlanAxis {
   int values = 1;
   int own = 0; ///< where the search starts
+  /// More of it costs little: what is not good in itself may be with some levels more of this.
+  bool helps = false;
+  /// Less of it is a lesser model, whether a clock can tell or not.
+  bool counts = false;
 };
 
 /// One value on each axis.
@@ -65,12 +69,13 @@ struct PlanResult {
 };
 
 /// A change that saves less than this share is not worth a choice, and is near what a clock can tell.
-inline constexpr double k_least_saving = 0.02;
+inline constexpr double k_least_saving = 0.03;
 
-/// Axes are tried in their order, each by bisection: where a cheaper value is good all between it and the own are taken
-/// to be. What verifying finds wrong is mended by taking choices back. With a budget (ms a frame) that the least good
-/// model exceeds, the most exact model within it is looked for instead. Never returns a model that is not good when
-/// one that is (and is within the budget) was measured, unless verifying said otherwise.
+/// Axes are tried in their order, each by bisection, with the axes that help: where a cheaper value is good all between
+/// it and the own are taken to be. What verifying finds wrong is mended by help, then by taking choices back. With a
+/// budget (ms a frame) that the least good model exceeds, the most exact model within it is looked for instead. Never
+/// returns a model that is not good when one that is (and is within the budget) was measured, unless verifying said
+/// otherwise.
 PlanResult find_plan(std::span<const PlanAxis> axes, const PlanMeasurer& measurer, std::optional<double> budget_ms);
 
 } // namespace tutu::app

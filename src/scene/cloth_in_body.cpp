@@ -5,6 +5,7 @@
 #include "src/scene/run_stats.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace tutu::app {
 namespace {
@@ -49,14 +50,24 @@ double ClothInBody::deepest() const {
 
 ClothProbe::ClothProbe(const cloth::Garment& garment) : garment_(&garment), pinned_(cloth::pinned_flags(garment)) {
   for (const cloth::Edge& edge : cloth::edges_of(garment.triangles))
-    if (!pinned_[edge.a] || !pinned_[edge.b]) edges_.push_back({edge.a, edge.b});
+    if (!pinned_[edge.a] || !pinned_[edge.b]) {
+      edges_.push_back({edge.a, edge.b});
+      clear_ = std::max(clear_, (garment.rest_positions[edge.a] - garment.rest_positions[edge.b]).norm());
+    }
 }
 
 void ClothProbe::measure(const proxies::BodyMesh& body, std::span<const Vec3> positions, ClothInBody& result) const {
-  std::vector<double> distances;
+  std::vector<double> distances; // where nobody needs to ask a bound, that none is below
   distances.reserve(positions.size());
+  std::optional<Known> asked; // the last; neighbours follow each other
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    distances.push_back(body.signed_distance(positions[i]).distance);
+    const double bound = asked ? asked->least_at(positions[i]) : 0.0;
+    if (bound > clear_) {
+      distances.push_back(bound);
+    } else {
+      distances.push_back(body.signed_distance(positions[i]).distance);
+      asked = {positions[i], distances.back()};
+    }
     if (pinned_[i]) continue;
     const double depth = std::max(0.0, -distances.back());
     result.particles.add(depth);

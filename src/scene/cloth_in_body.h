@@ -45,6 +45,7 @@ private:
   const cloth::Garment* garment_;
   std::vector<std::uint8_t> pinned_;
   std::vector<std::array<int, 2>> edges_; ///< with a free end
+  double clear_ = 0.0; ///< m, the longest of them at rest: of a particle farther out no edge reaches the body
 };
 
 } // namespace tutu::app

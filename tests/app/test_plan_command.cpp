@@ -111,7 +111,8 @@ TEST(PlanProxies, ThoseThatStayAreInReachAndWereTouched) {
   const std::string file = write_small_scene(folder);
   Scene scene = load_scene(read_scene(file));
   proxies::Proxy beside = scene.proxies.front(), beyond = beside, off = beside;
-  const auto move = [](proxies::Proxy& proxy, const char* name, const Vec3& by) { // turned nowhere: a joint's axes are the world's
+  const auto move = [](proxies::Proxy& proxy, const char* name,
+                       const Vec3& by) { // turned nowhere: a joint's axes are the world's
     proxy.name = name;
     proxy.a.points[0] += by;
     proxy.b.points[0] += by;

@@ -68,7 +68,7 @@ FakeScene random_scene(std::uint64_t seed) {
   const int axes = 1 + static_cast<int>(4 * number());
   for (int k = 0; k < axes; ++k) {
     const int values = 1 + static_cast<int>(9 * number());
-    scene.axes.push_back({values, static_cast<int>(values * number())});
+    scene.axes.push_back({values, static_cast<int>(values * number()), number() < 0.3});
     scene.weight.push_back(1.2 * number());
     scene.price.push_back(number() < 0.2 ? 0.0 : number());
   }
@@ -102,7 +102,9 @@ TEST(PlanSearch, TheBestIsNeverWorseThanWhatWasMeasured) {
       EXPECT_GT(result.excess, 1.0);
       for (const auto& [levels, f] : scene.measured) {
         const double worse = scene.verified.contains(levels) ? std::max(f.excess, scene.verified.at(levels)) : f.excess;
-        if (in_budget(f) == result.in_budget) EXPECT_LE(result.excess, worse) << "seed " << seed;
+        if (in_budget(f) == result.in_budget) {
+          EXPECT_LE(result.excess, worse) << "seed " << seed;
+        }
       }
     }
     (result.good ? good : bad) += 1;
@@ -118,9 +120,13 @@ TEST(PlanSearch, ItCostsNoMoreThanTheOwnWhereThatIsGood) {
     FakeScene scene = random_scene(seed);
     scene.luck = 0.0;
     const PlanResult result = find_plan(scene.axes, scene.measurer(), {});
-    if (result.own.good() && result.good) EXPECT_LE(result.ms, result.own.ms * (1 + 1e-9)) << "seed " << seed;
+    if (result.own.good() && result.good) {
+      EXPECT_LE(result.ms, result.own.ms * (1 + 1e-9)) << "seed " << seed;
+    }
     for (const PlanTrial& trial : result.trials)
-      if (trial.end == PlanTrial::End::kept && trial.cost_ratio) EXPECT_LT(*trial.cost_ratio, 1.0 - k_least_saving);
+      if (trial.end == PlanTrial::End::kept && trial.cost_ratio) {
+        EXPECT_LT(*trial.cost_ratio, 1.0 - k_least_saving);
+      }
   }
 }
 
@@ -143,6 +149,51 @@ TEST(PlanSearch, BisectionFindsTheLeastOfOneAxis) {
   }
 }
 
+TEST(PlanSearch, WhatHelpsMakesMoreChoicesGood) {
+  // Alone the cheaper value of the second axis is too wrong; with one level of the first, which costs little, it is
+  // not.
+  PlanMeasurer m;
+  const auto excess = [](const PlanLevels& levels) { return 0.5 + 0.7 * (1 - levels[1]) - 0.4 * levels[0]; };
+  const auto cost = [](const PlanLevels& levels) { return 1.0 + levels[1] + 0.1 * levels[0]; };
+  m.measure = [&](const PlanLevels& levels) { return PlanFigures{excess(levels), cost(levels)}; };
+  m.verify = excess;
+  m.cost_ratio = [&](const PlanLevels& a, const PlanLevels& b) { return cost(a) / cost(b); };
+  m.go_on = [] { return true; };
+  for (const bool helps : {false, true}) {
+    const std::vector<PlanAxis> axes = {{3, 0, helps}, {2, 1}};
+    const PlanResult result = find_plan(axes, m, {});
+    EXPECT_TRUE(result.good);
+    EXPECT_EQ(result.levels, helps ? (PlanLevels{1, 0}) : (PlanLevels{0, 1}));
+  }
+}
+
+TEST(PlanSearch, TwoErrorsThatTwoHelpersLowerAreMetTogether) {
+  // The second axis at 0 makes both errors too large; each helper alone lowers one and raises the other.
+  PlanMeasurer m;
+  const auto excess = [](const PlanLevels& l) {
+    const double one = 1.5 - 0.5 * l[0] + 0.2 * l[1] - 1.0 * l[2], other = 1.5 - 0.6 * l[1] + 0.2 * l[0] - 1.0 * l[2];
+    return std::max(one, other);
+  };
+  m.measure = [&](const PlanLevels& levels) { return PlanFigures{excess(levels), 1.0 + levels[2]}; };
+  m.verify = excess;
+  m.cost_ratio = [](const PlanLevels& a, const PlanLevels& b) { return (1.0 + a[2]) / (1.0 + b[2]); };
+  m.go_on = [] { return true; };
+  const std::vector<PlanAxis> axes = {{4, 0, true}, {3, 0, true}, {2, 1}};
+  const PlanResult result = find_plan(axes, m, {});
+  EXPECT_TRUE(result.good);
+  EXPECT_EQ(result.levels[2], 0);
+}
+
+TEST(PlanSearch, WhatCountsIsLeftOutWhateverTheClockSays) {
+  PlanMeasurer m;
+  m.measure = [](const PlanLevels&) { return PlanFigures{0.5, 1.0}; };
+  m.verify = [](const PlanLevels&) { return 0.5; };
+  m.cost_ratio = [](const PlanLevels&, const PlanLevels&) { return 1.01; };
+  m.go_on = [] { return true; };
+  const std::vector<PlanAxis> axes = {{2, 1, false, true}, {2, 1, false, false}};
+  EXPECT_EQ(find_plan(axes, m, {}).levels, (PlanLevels{0, 1}));
+}
+
 TEST(PlanSearch, AnInterruptLeavesTheBestSoFar) {
   for (std::uint64_t seed = 0; seed < 300; ++seed)
     for (const int calls : {0, 1, 3, 6}) {
@@ -155,7 +206,9 @@ TEST(PlanSearch, AnInterruptLeavesTheBestSoFar) {
       // The last call was cut short and does not count.
       int seen_good = 0;
       for (const auto& [levels, f] : scene.measured) seen_good += f.good();
-      if (seen_good > 1 && scene.verified.empty()) EXPECT_LE(result.excess, 1.0);
+      if (seen_good > 1 && scene.verified.empty()) {
+        EXPECT_LE(result.excess, 1.0);
+      }
     }
 }
 
