@@ -133,7 +133,7 @@ std::string goal_text(const PlanGoal& goal, const PlanLimits& limits) {
                   1e3 * goal.most, k_what[static_cast<std::size_t>(goal.error)]);
   if (goal.error == PlanError::all)
     text += fmt::format(" (at most {:.1f} mm off the reference in the first second, {:.1f} mm off its settled shape: "
-                        "the scene's own and as much again)",
+                        "the scene's own and so much more)",
                         1e3 * limits.trajectory.value_or(0.0), 1e3 * limits.drape.value_or(0.0));
   return text + fmt::format("; 99 % of the threads at most {:.1f} % longer; nothing diverges\n", 1e2 * limits.stretch);
 }

@@ -16,9 +16,12 @@ public:
 
   PlanResult run(std::optional<double> budget) {
     if (const auto own = measured(own_)) result_.own = *own;
-    make_good();
-    if (is_good(levels_))
-      for (std::size_t axis = 0; axis < axes_.size(); ++axis) make_cheaper(axis);
+    for (int round = 0; round < k_rounds; ++round) {
+      levels_ = own_;
+      result_.trials.clear();
+      descend();
+      if (!is_good(levels_) || verified(levels_) || result_.interrupted) break;
+    }
     mend();
     if (!is_good(levels_) && !result_.interrupted) { // it looked good and was not
       make_good();
@@ -30,6 +33,15 @@ public:
   }
 
 private:
+  /// Searches, each knowing that the last one's result is wrong. What has been measured is not measured again.
+  static constexpr int k_rounds = 4;
+
+  void descend() {
+    make_good();
+    if (is_good(levels_))
+      for (std::size_t axis = 0; axis < axes_.size(); ++axis) make_cheaper(axis);
+  }
+
   bool go_on() {
     if (!result_.interrupted && !measurer_->go_on()) result_.interrupted = true;
     return !result_.interrupted;
@@ -46,8 +58,7 @@ private:
 
   /// From then on the excess is what verifying found, where that is more.
   bool verified(const PlanLevels& levels) {
-    const auto figures = measured(levels);
-    if (!figures || !figures->good()) return false;
+    if (!measured(levels) || !seen_.at(levels).good()) return false;
     if (verified_.contains(levels)) return true;
     if (!go_on()) return false;
     const double excess = measurer_->verify(levels);
@@ -56,6 +67,12 @@ private:
     seen.excess = std::max(seen.excess, excess);
     verified_.insert(levels);
     return seen.good();
+  }
+
+  double ratio_of(const PlanLevels& levels, const PlanLevels& other) {
+    const auto found = ratios_.find({levels, other});
+    if (found != ratios_.end()) return found->second;
+    return ratios_[{levels, other}] = measurer_->cost_ratio(levels, other);
   }
 
   bool is_good(const PlanLevels& levels) const {
@@ -70,12 +87,18 @@ private:
     if (end == PlanTrial::End::kept) levels_ = to;
   }
 
-  /// More exact, each time on the axis that helps the most, until it is good or nothing helps.
+  /// More exact: by what helps if that is enough, else each time on the axis that helps the most, until it is good or
+  /// nothing helps.
   void make_good() {
+    if (is_good(levels_)) return;
+    if (const auto helped = good_with_help(levels_, axes_.size())) {
+      std::size_t axis = 0;
+      while ((*helped)[axis] == levels_[axis]) ++axis;
+      note(static_cast<int>(axis), *helped, seen_.at(*helped), PlanTrial::End::kept);
+    }
     while (!is_good(levels_)) {
-      const auto now = seen_.find(levels_);
-      if (now == seen_.end()) return;
-      double least = now->second.excess;
+      if (!seen_.contains(levels_)) return;
+      double least = seen_.at(levels_).excess;
       std::optional<int> best;
       for (std::size_t axis = 0; axis < axes_.size(); ++axis) {
         if (levels_[axis] + 1 >= axes_[axis].values) continue;
@@ -152,7 +175,7 @@ private:
       }
     }
     if (good == levels_ || !go_on()) return;
-    const double ratio = measurer_->cost_ratio(good, levels_);
+    const double ratio = ratio_of(good, levels_);
     if (!go_on()) return;
     const bool cheaper = axes_[axis].counts || ratio < 1.0 - k_least_saving;
     note(static_cast<int>(axis), good, seen_.at(good), cheaper ? PlanTrial::End::kept : PlanTrial::End::not_cheaper,
@@ -242,6 +265,7 @@ private:
   PlanLevels own_, levels_; ///< where it began, and where it is
   std::map<PlanLevels, PlanFigures> seen_;
   std::set<PlanLevels> verified_;
+  std::map<std::pair<PlanLevels, PlanLevels>, double> ratios_;
   PlanResult result_;
 };
 

@@ -72,10 +72,10 @@ struct PlanResult {
 inline constexpr double k_least_saving = 0.03;
 
 /// Axes are tried in their order, each by bisection, with the axes that help: where a cheaper value is good all between
-/// it and the own are taken to be. What verifying finds wrong is mended by help, then by taking choices back. With a
-/// budget (ms a frame) that the least good model exceeds, the most exact model within it is looked for instead. Never
-/// returns a model that is not good when one that is (and is within the budget) was measured, unless verifying said
-/// otherwise.
+/// it and the own are taken to be. Where verifying finds the result wrong it searches again with that known;
+/// what is wrong even then is mended by help, then by taking choices back. With a budget (ms a frame) that the least
+/// good model exceeds, the most exact model within it is looked for instead. Never returns a model that is not good
+/// when one that is (and is within the budget) was measured, unless verifying said otherwise.
 PlanResult find_plan(std::span<const PlanAxis> axes, const PlanMeasurer& measurer, std::optional<double> budget_ms);
 
 } // namespace tutu::app
