@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   add_bench(app, status);
   add_cell(app, status);
   add_chart(app, status);
+  add_plan(app, status);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -89,9 +89,7 @@ public:
     for (const cloth::Garment& garment : scene.garments) probes_.emplace_back(garment);
   }
 
-  void after_frame(const Session& session, double ms) {
-    run_->stages.push_back(session.times());
-    run_->ms.push_back(ms);
+  void after_frame(const Session& session) {
     const proxies::SweptColliders colliders = session.colliders().swept();
     for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
       const cloth::Particles& particles = session.garment(static_cast<int>(g)).particles();
@@ -185,7 +183,7 @@ Protocol at_rate(const Protocol& protocol, int scene_rate, int rate) {
 }
 
 CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& protocol, bool measured,
-                 const std::function<bool()>& go_on) {
+                 const std::function<bool(const CellRun&)>& go_on) {
   CellRun run;
   std::optional<Measuring> measuring;
   if (measured) measuring.emplace(scene, run);
@@ -195,7 +193,7 @@ CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& pro
   const auto frame = [&](const std::function<void()>& take, const std::function<void()>& look) {
     take();
     if (!session.failure()) look();
-    if (!go_on()) run.stopped = true;
+    if (!go_on(run)) run.stopped = true;
   };
 
   for (int f = 1; f <= protocol.frames && alive(); ++f) {
@@ -207,7 +205,9 @@ CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& pro
           ms = now_ms(session.threads()) - before;
         },
         [&] {
-          if (measuring) measuring->after_frame(session, ms);
+          run.stages.push_back(session.times());
+          run.ms.push_back(ms);
+          if (measuring) measuring->after_frame(session);
           if (f % protocol.every != 0) return;
           run.recording.moments.push_back(moment_of(session));
           if (measuring) measuring->at_moment(session);

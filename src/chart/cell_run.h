@@ -71,10 +71,11 @@ struct CellStart {
 };
 inline constexpr double k_start_jitter = 1e-4; ///< m: far below any error that matters, so that what grows is the run's
 
-/// `scene` is as the setting has it; `protocol` in its own frames. Without `measured` only the recording, the failure
-/// and the substeps are there, and the run is as fast as it can be. `go_on` is asked after each frame. Throws
-/// InputError for a body without sides where it is measured.
+/// `scene` is as the setting has it; `protocol` in its own frames. Without `measured` only the recording, the times,
+/// the failure and the substeps are there, and the run is as fast as it can be. `go_on` is asked after each frame, and
+/// sees what has been measured so far (of the spreads nothing). Throws InputError for a body without sides where it is
+/// measured.
 CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& protocol, bool measured,
-                 const std::function<bool()>& go_on);
+                 const std::function<bool(const CellRun&)>& go_on);
 
 } // namespace tutu::app

@@ -86,7 +86,7 @@ private:
     const int substeps = plan_->substeps[k];
     const Scene scene = with_setting(*scene_, reference_setting(*scene_, *plan_, substeps));
     const CellStart cell{start_at_resolution(*scene_, start, plan_->resolution), 0};
-    CellRun run = run_cell(scene, cell, plan_->protocol, false, go_on);
+    CellRun run = run_cell(scene, cell, plan_->protocol, false, [&](const CellRun&) { return go_on(); });
     if (run.stopped) return;
     const std::string trouble = run.recoveries > 0 ? fmt::format("{} frames diverged", run.recoveries) : run.failure;
     if (!trouble.empty())

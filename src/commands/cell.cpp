@@ -56,7 +56,7 @@ int run(const Options& options) {
   if (!reference) return k_not_met;
 
   const CellStart start{start_at_resolution(base, reference->start, setting.resolution), options.seed};
-  const CellRun run = run_cell(scene, start, protocol, true, [] { return !interrupted(); });
+  const CellRun run = run_cell(scene, start, protocol, true, [](const CellRun&) { return !interrupted(); });
   if (run.stopped) {
     fmt::print(stderr, "tutu: interrupted; no row written\n");
     return k_not_met;

@@ -5,6 +5,7 @@
 #include "src/scene/run_stats.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace tutu::app {
 namespace {
@@ -49,14 +50,24 @@ double ClothInBody::deepest() const {
 
 ClothProbe::ClothProbe(const cloth::Garment& garment) : garment_(&garment), pinned_(cloth::pinned_flags(garment)) {
   for (const cloth::Edge& edge : cloth::edges_of(garment.triangles))
-    if (!pinned_[edge.a] || !pinned_[edge.b]) edges_.push_back({edge.a, edge.b});
+    if (!pinned_[edge.a] || !pinned_[edge.b]) {
+      edges_.push_back({edge.a, edge.b});
+      clear_ = std::max(clear_, (garment.rest_positions[edge.a] - garment.rest_positions[edge.b]).norm());
+    }
 }
 
 void ClothProbe::measure(const proxies::BodyMesh& body, std::span<const Vec3> positions, ClothInBody& result) const {
-  std::vector<double> distances;
+  std::vector<double> distances; // where nobody needs to ask a bound, that none is below
   distances.reserve(positions.size());
+  std::optional<Known> asked; // the last; neighbours follow each other
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    distances.push_back(body.signed_distance(positions[i]).distance);
+    const double bound = asked ? asked->least_at(positions[i]) : 0.0;
+    if (bound > clear_) {
+      distances.push_back(bound);
+    } else {
+      distances.push_back(body.signed_distance(positions[i]).distance);
+      asked = {positions[i], distances.back()};
+    }
     if (pinned_[i]) continue;
     const double depth = std::max(0.0, -distances.back());
     result.particles.add(depth);
@@ -75,7 +86,8 @@ void ClothProbe::measure(const proxies::BodyMesh& body, std::span<const Vec3> po
                                        static_cast<int>(triangle[2])};
     if (pinned_[corner[0]] && pinned_[corner[1]] && pinned_[corner[2]]) continue;
     const Vec3 centroid = (positions[corner[0]] + positions[corner[1]] + positions[corner[2]]) / 3.0;
-    const double at_centroid = body.signed_distance(centroid).distance;
+    const double bound = least_at(centroid, std::array{known(corner[0]), known(corner[1]), known(corner[2])});
+    const double at_centroid = bound >= 0.0 ? bound : body.signed_distance(centroid).distance; // or nobody needs to ask
     result.triangles.add(std::max(0.0, -at_centroid));
     result.deepest_of_triangles = std::max(result.deepest_of_triangles, -at_centroid);
 
@@ -86,7 +98,9 @@ void ClothProbe::measure(const proxies::BodyMesh& body, std::span<const Vec3> po
       for (int j = 0; i + j <= k_parts; ++j) {
         const int k = k_parts - i - j;
         const bool at_corner = i == k_parts || j == k_parts || k == k_parts;
-        if (at_corner) continue; // a particle
+        const bool placed = (i == 0 || pinned_[corner[0]]) && (j == 0 || pinned_[corner[1]]) &&
+                            (k == 0 || pinned_[corner[2]]); // on an edge between pinned corners
+        if (at_corner || placed) continue;                  // a particle, or nothing that is simulated
         const Vec3 p = (i * positions[corner[0]] + j * positions[corner[1]] + k * positions[corner[2]]) / k_parts;
         if (-least_at(p, knowns) <= result.deepest_of_triangles)
           continue; // it cannot be deeper: asking changes nothing

@@ -32,7 +32,8 @@ struct ClothInBody {
 };
 
 /// One garment against a posed body. What is pinned is placed, not simulated: pinned particles do not count, and edges
-/// and triangles only where a corner is free. The garment must outlive it.
+/// and triangles only where a corner is free, of those no point of an edge whose ends are both pinned: how deep that
+/// chord cuts into the body is a matter of where it was pinned. The garment must outlive it.
 class ClothProbe {
 public:
   explicit ClothProbe(const cloth::Garment& garment);
@@ -44,6 +45,7 @@ private:
   const cloth::Garment* garment_;
   std::vector<std::uint8_t> pinned_;
   std::vector<std::array<int, 2>> edges_; ///< with a free end
+  double clear_ = 0.0; ///< m, the longest of them at rest: of a particle farther out no edge reaches the body
 };
 
 } // namespace tutu::app

@@ -1,0 +1,90 @@
+#include "src/scene/scene_write.h"
+
+#include "rig/file_io.h"
+
+#include <nlohmann/json.hpp>
+
+namespace tutu::app {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+/// As the scene's folder sees it.
+class Paths {
+public:
+  explicit Paths(const fs::path& scene) : folder_(fs::absolute(scene).parent_path()) {}
+  std::string operator()(const fs::path& file) const {
+    return fs::absolute(file).lexically_normal().lexically_proximate(folder_.lexically_normal()).generic_string();
+  }
+
+private:
+  fs::path folder_;
+};
+
+ordered_json motion_json(const Motion& motion, const Paths& paths) {
+  if (const auto* own = std::get_if<OwnMotion>(&motion)) {
+    ordered_json json;
+    std::visit([&](const auto& which) { json["animation"] = which; }, own->animation);
+    return json;
+  }
+  if (const auto* texts = std::get_if<rig::ThreeTexts>(&motion)) {
+    ordered_json json = {{"translations", paths(texts->translations)},
+                         {"rotations", paths(texts->rotations)},
+                         {"times", paths(texts->times)}};
+    if (texts->joints) json["joints"] = paths(*texts->joints);
+    return {{"texts", std::move(json)}};
+  }
+  if (const auto* take = std::get_if<MocapMotion>(&motion)) {
+    ordered_json json = {{"bvh", paths(take->bvh)}};
+    if (take->options.rest_frame) json["rest_frame"] = *take->options.rest_frame;
+    json["from"] = take->options.from;
+    if (take->options.to) json["to"] = *take->options.to;
+    for (const auto& [name, joint] : take->joints)
+      json["joints"][name] = joint ? ordered_json(*joint) : ordered_json(false);
+    return json;
+  }
+  const auto& clip = std::get<ClipMotion>(motion);
+  if (!clip.retarget_from) return paths(clip.clip);
+  return {{"clip", paths(clip.clip)}, {"retarget_from", paths(*clip.retarget_from)}};
+}
+
+ordered_json garment_json(const GarmentEntry& entry, const Paths& paths) {
+  ordered_json json = {{"file", paths(entry.file)}};
+  const auto numbers = [](const Vec3& v) { return ordered_json{v.x(), v.y(), v.z()}; };
+  if (entry.scale != Vec3::Ones()) json["scale"] = numbers(entry.scale);
+  if (entry.offset != Vec3::Zero()) json["offset"] = numbers(entry.offset);
+  if (entry.resolution != 1.0) json["resolution"] = entry.resolution;
+  return json.size() == 1 ? json["file"] : json;
+}
+
+} // namespace
+
+void write_scene(const SceneDescription& d, const fs::path& file, const std::string& comment) {
+  const Paths paths(file);
+  ordered_json json;
+  if (!comment.empty()) json["comment"] = comment;
+  json["character"] = paths(d.character);
+  if (d.max_influences != SceneDescription{}.max_influences)
+    json["character"] = {{"file", paths(d.character)}, {"max_influences", d.max_influences}};
+  json["motion"] = motion_json(d.motion, paths);
+  if (d.interpolation) json["interpolation"] = rig::k_interpolation_names[static_cast<std::size_t>(*d.interpolation)];
+  json["skinning"] = rig::k_skinning_names[static_cast<std::size_t>(d.skinning)];
+  if (d.proxies) json["proxies"] = paths(*d.proxies);
+  json["garments"] = ordered_json::array();
+  for (const GarmentEntry& entry : d.garments) json["garments"].push_back(garment_json(entry, paths));
+  if (!d.ground_height) json["ground"] = false;
+  else json["ground"] = {{"height", *d.ground_height}};
+  json["solver"] = {
+      {"name", cloth::name_of(d.solver)},         {"substeps", d.substeps}, {"adaptive_substeps", d.adaptive_substeps},
+      {"frames_per_second", d.frames_per_second}, {"threads", d.threads},   {"passes", d.passes},
+      {"double_precision", d.double_precision}};
+  json["collision"] = {{"backend", proxies::k_backend_names[static_cast<std::size_t>(d.backend)]},
+                       {"self_collision", d.self_collision},
+                       {"features", cloth::k_contact_features_names[static_cast<std::size_t>(d.features)]},
+                       {"swept", d.swept}};
+  json["drape"] = paths(d.drape);
+  write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+}
+
+} // namespace tutu::app
