@@ -12,6 +12,7 @@
 #include "src/scene/scene_player.h"
 #include "src/stability/warning.h"
 #include "src/viewer/viewer.h"
+#include "src/viewer/window.h"
 
 #include <algorithm>
 #include <charconv>

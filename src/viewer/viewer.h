@@ -17,9 +17,6 @@ struct ViewerOptions {
   std::optional<int> max_frames = {}; ///< closes by itself after that many drawn frames, for tests
 };
 
-/// Whether a window can be opened here.
-bool display_available();
-
 /// Plays until the window is closed, Ctrl-C was caught (interrupt.h) or max_frames is reached; returns the exit status.
 /// Throws std::runtime_error when there is no display or no OpenGL 3.3.
 int run_viewer(Player& player, const ViewerOptions& options);

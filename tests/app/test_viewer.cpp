@@ -1,5 +1,6 @@
 // The window, on a display of the test's own.
 #include "src/viewer/viewer.h"
+#include "src/viewer/window.h"
 
 #include <array>
 #include <cmath>
