@@ -138,4 +138,17 @@ Results read_results(const std::filesystem::path& file) {
   return results;
 }
 
+int merge_rows(const std::filesystem::path& from, const std::filesystem::path& into) {
+  std::map<std::string, bool> crashed; // by key, of what is there
+  for (const Row& row : read_results(into).rows) crashed[row.text("key")] = row.text("outcome") == k_crashed;
+  int added = 0;
+  for (const Row& row : read_results(from).rows) {
+    const auto known = crashed.find(row.text("key"));
+    if (known != crashed.end() && (!known->second || row.text("outcome") == k_crashed)) continue;
+    add_row(into, row);
+    ++added;
+  }
+  return added;
+}
+
 } // namespace tutu::app

@@ -23,6 +23,9 @@ struct Results {
 /// second row of one key is dropped. Throws InputError on a file of other columns.
 Results read_results(const std::filesystem::path& file);
 
+/// Adds the rows of `from` whose keys `into` does not have, or has from a crash only; returns how many.
+int merge_rows(const std::filesystem::path& from, const std::filesystem::path& into);
+
 /// One line of CSV [RFC 4180], quoted where it must be; line breaks in values become blanks.
 std::string csv_line(const std::vector<std::string>& values);
 /// Its values; nothing for an open quote.

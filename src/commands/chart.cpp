@@ -2,11 +2,11 @@
 #include "src/export/chart.h"
 #include "rig/error.h"
 #include "rig/file_io.h"
-#include "src/chart/cell_processes.h"
 #include "src/chart/chart_page.h"
 #include "src/chart/chart_picture.h"
 #include "src/chart/results_file.h"
 #include "src/chart/settings_grid.h"
+#include "src/chart/slurm_array.h"
 #include "src/commands/chart_options.h"
 #include "src/commands/commands.h"
 #include "src/interrupt.h"
@@ -26,6 +26,8 @@ namespace fs = std::filesystem;
 struct Options {
   ChartOptions chart;
   std::string out, settings;
+  std::vector<std::string> merge;
+  bool slurm = false;
   int jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   int repeats = 0; ///< 0: as many as built in
 };
@@ -55,7 +57,7 @@ void make_fitted(std::vector<Setting>& settings, const Scene& scene, const fs::p
   run_processes(
       calls, jobs,
       [&](std::size_t, const ProcessEnd& end) {
-        if ((end.status != 0 || end.signal != 0) && !interrupted()) trouble = end.message;
+        if (!end.good() && !interrupted()) trouble = end.last_message();
         bar.tick(++done);
       },
       [] { return !interrupted(); });
@@ -74,19 +76,37 @@ std::vector<CellTask> tasks_of(const std::vector<Setting>& settings, int repeats
   return tasks;
 }
 
+/// Where the row of a task goes. On a cluster each has a file of its own: not every shared disk knows how to let only
+/// one write.
+fs::path row_file(const Options& options, const CellTask& task) {
+  const fs::path folder = options.out;
+  return options.slurm ? folder / "slurm" / (cell_key(task) + ".csv") : folder / "results.csv";
+}
+
 std::vector<std::string> call_of(const Options& options, const CellTask& task, const SettingValues& of_scene) {
   std::vector<std::string> words = options.chart.words();
   words.insert(words.begin(), "cell");
   for (const std::string& word : setting_options(setting_values(task.setting), of_scene)) words.push_back(word);
   if (!task.setting.name.empty()) words.insert(words.end(), {"--name", task.setting.name});
-  words.insert(words.end(),
-               {"--seed", std::to_string(task.seed), "--out", (fs::path(options.out) / "results.csv").string()});
+  words.insert(words.end(), {"--seed", std::to_string(task.seed), "--out", row_file(options, task).string()});
   return words;
+}
+
+/// Rows of other machines, and of a cluster's jobs that ended after the chart that asked for them.
+void merge_others(const Options& options, const fs::path& file) {
+  for (const std::string& other : options.merge) {
+    if (!fs::exists(other)) throw InputError(other, "", "no such file", "rows of tutu cell or tutu chart (.csv)");
+    fmt::print(stderr, "note: {} rows of {} are new\n", merge_rows(other, file), other);
+  }
+  if (!fs::exists(fs::path(options.out) / "slurm")) return;
+  for (const auto& entry : fs::directory_iterator(fs::path(options.out) / "slurm"))
+    if (entry.path().extension() == ".csv") merge_rows(entry.path(), file);
 }
 
 /// Runs what has no row yet. False when interrupted.
 bool run_missing(const Options& options, const std::vector<CellTask>& tasks, const SettingValues& of_scene) {
   const fs::path file = fs::path(options.out) / "results.csv";
+  merge_others(options, file);
   const Results before = read_results(file);
   for (const std::string& note : before.notes) fmt::print(stderr, "note: {}\n", note);
   std::set<std::string> done;
@@ -103,19 +123,23 @@ bool run_missing(const Options& options, const std::vector<CellTask>& tasks, con
     fmt::print(stderr, "note: {} of {} runs are in {} already\n", tasks.size() - missing.size(), tasks.size(),
                file.string());
   Progress bar("chart", static_cast<int>(missing.size()));
-  int ended = 0;
-  run_processes(
-      calls, options.jobs,
-      [&](std::size_t k, const ProcessEnd& end) {
-        const bool wrote_row = end.signal == 0 && (end.status == k_ok || end.status == k_not_met);
-        if (!wrote_row && !interrupted())
-          add_row(file, row_of_crash(missing[k],
-                                     end.signal != 0 ? fmt::format("killed by signal {}", end.signal) : end.message));
-        bar.tick(++ended);
-      },
-      [] { return !interrupted(); });
+  int ended = 0, crashes = 0;
+  const auto on_end = [&](std::size_t k, const ProcessEnd& end) {
+    const bool wrote_row = end.signal == 0 && (end.status == k_ok || end.status == k_not_met);
+    if (wrote_row && options.slurm) merge_rows(row_file(options, missing[k]), file);
+    if (!wrote_row && !interrupted()) {
+      add_row(file, row_of_crash(missing[k], end.signal != 0 ? fmt::format("killed by signal {}", end.signal)
+                                                             : end.last_message()));
+      ++crashes;
+    }
+    bar.tick(++ended);
+  };
+  const auto go_on = [] { return !interrupted(); };
+  if (options.slurm) run_slurm_array(calls, fs::path(options.out) / "slurm", on_end, go_on);
+  else run_processes(calls, options.jobs, on_end, go_on);
   bar.finish();
-  return !interrupted();
+  if (options.slurm && crashes == 0 && go_on()) fs::remove_all(fs::path(options.out) / "slurm"); // else for its logs
+  return go_on();
 }
 
 /// Rows measured against this reference; without those of a proxies file that has changed since.
@@ -135,6 +159,7 @@ std::vector<Row> rows_to_draw(const fs::path& file, const std::vector<CellTask>&
 int run(const Options& options) {
   const fs::path folder = options.out;
   require_chart(folder / "chart.svg");
+  if (options.slurm) require_slurm();
   fs::create_directories(folder);
   catch_interrupt();
   const Scene scene = options.chart.load();
@@ -185,6 +210,10 @@ void add_chart(CLI::App& app, int& status) {
   command->add_option("-o,--out", options->out, "Folder for results.csv, chart.html and the pictures")->required();
   command->add_option("--settings", options->settings, "Settings to chart (.json) instead of the built-in ones");
   command->add_option("--jobs", options->jobs, "Runs at a time")->check(CLI::Range(1, 1024))->capture_default_str();
+  command->add_flag("--slurm", options->slurm,
+                    "Run them as a job array of Slurm; the folder and the cache must be seen by all its machines");
+  command->add_option("--merge", options->merge, "Also take the rows of these files (.csv), from other machines")
+      ->delimiter(',');
   command
       ->add_option("--repeats", options->repeats,
                    "Starts of each setting, the first as draped, the others jittered "
