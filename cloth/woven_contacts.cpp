@@ -164,11 +164,11 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
       const double travelled = tile.travelled + collider_travel_[pair.collider];
       pair.in_haste = false;
       if (swept_ && pair.collider != ground && travelled >= pair.wake - tile.reach) {
-        // So near a cell of the tile may be. What moves this fast may also tear cells longer than any rule for cells at
-        // rest reckons with: then all of their features are asked.
+        // So near a cell of the tile may be.
         const double safe = proxies::safe_motion(placed_[pair.collider].narrowest(), offset_);
         const double motion = tile.way + static_cast<double>(colliders_[pair.collider].moved);
-        pair.in_haste = motion >= 0.5 * safe && features_ != ContactFeatures::particles;
+        const double hasty = pair.fits_through ? std::min(0.5 * safe, k_hasty_speed * h) : 0.5 * safe;
+        pair.in_haste = motion >= hasty && features_ != ContactFeatures::particles;
         if (motion >= safe) sweep(sheet, tile, pair);
       }
       if (travelled < pair.wake) continue;
@@ -210,6 +210,7 @@ template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(con
   // corners' distance from the axis: it clears all but k_tolerated_poke when the corners keep this from the axis.
   const double longer = std::max(weft, warp), kept = clear * clear + 2.0 / 9.0 * longer * longer;
   const double floating = radius + offset_ + k_most_rise, offset = radius + offset_;
+  pair.fits_through = k_torn_cell * std::max(tile.weft, tile.warp) > 2.0 * offset;
   if (kept <= floating * floating) {
     pair.rise = static_cast<T>(kept > offset * offset ? std::sqrt(kept) - offset : 0.0);
     return pair;

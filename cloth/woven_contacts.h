@@ -51,8 +51,9 @@ private:
     int collider = 0;
     T rise = 0; ///< m
     CellFeatures<T> features;
-    bool in_haste = false; ///< in this substep
-    double wake = 0.0;     ///< sum of travels at which the two may meet
+    bool fits_through = false; ///< the collider, between two corners that a blow tears apart
+    bool in_haste = false;     ///< in this substep
+    double wake = 0.0;         ///< sum of travels at which the two may meet
   };
 
   void find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet);

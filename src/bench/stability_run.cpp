@@ -31,6 +31,13 @@ double turn_rate_of(const cloth::Particles& particles) {
   return inertia > 0.0 ? moment / inertia : 0.0;
 }
 
+/// The most equal parts, `wanted` at most, into which so many substeps can be shared out.
+int parts_of(int substeps, int wanted) {
+  int parts = std::clamp(wanted, 1, substeps);
+  while (substeps % parts != 0) --parts;
+  return parts;
+}
+
 void judge_end(const StabilityScene& scene, const std::vector<Capsule>& capsules, StabilityRun& run) {
   run.stretch = cloth::spread(lengthening_of(scene.garment, run.end)).p99;
   const std::vector<double> depths = cloth::penetration_of(scene.garment, run.end, capsules, std::nullopt);
@@ -42,8 +49,9 @@ void judge_end(const StabilityScene& scene, const std::vector<Capsule>& capsules
 } // namespace
 
 StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& setup) {
-  const double frame_seconds = 1.0 / k_stability_frames_per_second;
-  const int frames = static_cast<int>(std::lround(scene.seconds * k_stability_frames_per_second));
+  const int parts = parts_of(setup.substeps, scene.looks);
+  const double part_seconds = 1.0 / (k_stability_frames_per_second * parts);
+  const int steps = static_cast<int>(std::lround(scene.seconds * k_stability_frames_per_second)) * parts;
   const auto query = proxies::make_query(setup.backend);
   cloth::GuardedSolver solver(cloth::make_solver(scene.garment, setup.solver), scene.garment);
   solver.reset(scene.start);
@@ -51,18 +59,19 @@ StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& se
 
   std::vector<Capsule> capsules, capsules_before;
   std::vector<Vec3> pins, pins_before, spin = scene.spin;
-  for (Vec3& turn : spin) turn *= frame_seconds;
+  for (Vec3& turn : spin) turn *= part_seconds;
   scene.pose(0.0, capsules, pins);
   counter.start(scene.start, capsules);
   const std::vector<double> friction(capsules.size() + 1, scene.friction);
 
   StabilityRun run;
   std::vector<double> ms;
-  for (int frame = 0; frame < frames && run.failure.empty(); ++frame) {
+  for (int step = 0; step < steps && run.failure.empty(); ++step) {
+    const int frame = step / parts;
     capsules_before.swap(capsules);
     pins_before.swap(pins);
-    scene.pose((frame + 1) * frame_seconds, capsules, pins);
-    if (scene.told_jump_frame == frame) {
+    scene.pose((step + 1) * part_seconds, capsules, pins);
+    if (scene.told_jump_frame == frame && step % parts == 0) {
       std::vector<Vec3> moved = solver.particles().positions;
       for (Vec3& p : moved) p += scene.jump;
       solver.reset(moved);
@@ -76,8 +85,8 @@ StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& se
     input.friction = friction;
     input.pins_start = pins_before;
     input.pins_end = pins;
-    input.seconds = frame_seconds;
-    input.substeps = setup.substeps;
+    input.seconds = part_seconds;
+    input.substeps = setup.substeps / parts;
     const auto begin = std::chrono::steady_clock::now();
     if (setup.adaptive)
       input.substeps =
@@ -85,12 +94,12 @@ StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& se
               .substeps;
     const auto divergence = solver.step(input, *query);
     ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
-    run.most_substeps = std::max(run.most_substeps, solver.substeps());
+    run.most_substeps = std::max(run.most_substeps, parts * solver.substeps());
     run.recoveries += solver.recovery() && !divergence;
     if (divergence)
       run.failure = fmt::format("diverged in frame {}: an edge at particle {} is stretched by {:.3g} %", frame,
                                 divergence->particle, 100.0 * divergence->stretch);
-    else ++run.frames;
+    else run.frames = (step + 1) / parts;
     counter.advance(solver.particles().positions, capsules);
     for (const double s : lengthening_of(scene.garment, solver.particles()))
       run.worst_stretch = std::max(run.worst_stretch, s);
@@ -98,7 +107,7 @@ StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& se
   run.crossings = counter.crossings();
   run.pierced = counter.pierced();
   run.pierced_at_end = counter.pierced_now();
-  run.ms = cloth::percentile(ms, 0.5);
+  run.ms = parts * cloth::percentile(ms, 0.5);
   run.end = solver.particles();
   judge_end(scene, capsules, run);
   return run;

@@ -94,6 +94,7 @@ StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed) {
   scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
   const double end = k_begin + (k_to - k_from) / leg.speed;
   scene.seconds = end + 3.0;
+  scene.looks = static_cast<int>(std::ceil(leg.speed / k_stability_frames_per_second / leg.radius));
   scene.pose = [end, radius = leg.radius, pinned = pins_at_rest(scene.garment)](
                    double t, std::vector<Capsule>& capsules, std::vector<Vec3>& pins) {
     const double z = std::lerp(k_from, k_to, ramp(t, k_begin, end));

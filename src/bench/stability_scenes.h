@@ -43,6 +43,9 @@ struct StabilityScene {
   std::optional<int> told_jump_frame;
   Vec3 jump = Vec3::Zero();
   StabilityLimits limits;
+  /// How often a frame is looked for crossings, as far as its substeps can be shared out so: between two looks all is
+  /// taken to move on straight lines, which cloth that whips around a thin limb does not within a frame.
+  int looks = 1;
 };
 
 /// A capsule goes through a sheet of 0.6 m that hangs from its upper row, along its normal, and stops where the sheet

@@ -31,6 +31,20 @@ TEST_P(FastLeg, NothingPasses_slow) {
 }
 INSTANTIATE_TEST_SUITE_P(Stability, FastLeg, ::testing::Values(1, 2, 5, 10, 20, 30));
 
+// As thin as a hand: it fits between the corners of a cell that a blow tears apart.
+class ThinLeg : public ::testing::TestWithParam<double> {};
+TEST_P(ThinLeg, NothingPasses_slow) {
+  for (const double thickness : {0.004, 0.008, 0.016, 0.032})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      const StabilityScene scene = fast_leg(app::FastLeg{GetParam(), 0.012, thickness}, seed);
+      const StabilityRun run = run_stability(scene, {});
+      EXPECT_EQ(run.crossings, 0) << scene.name << ", " << thickness << " m, start " << seed;
+      EXPECT_EQ(run.pierced, 0) << scene.name << ", " << thickness << " m, start " << seed;
+      EXPECT_TRUE(run.failure.empty()) << run.failure;
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Stability, ThinLeg, ::testing::Values(1, 3, 7, 10, 14, 20, 30));
+
 TEST(Stability, AdaptiveSubstepsAreWhatStopsAFastLeg_slow) {
   StabilitySetup setup;
   setup.substeps = 3;
