@@ -42,8 +42,8 @@ void Editor::resize(int width, int height, float pixel_scale) {
 
 void Editor::look(float yaw) {
   Eigen::AlignedBox3f box;
-  box.extend(Vec3f::Zero());
   for (const Transform& joint : model_from_joint()) box.extend(joint.translation.cast<float>());
+  box.min().y() = std::min(box.min().y(), 0.0f); // the ground is seen too
   orbit_ = frame_orbit(box.min().array() - k_flesh, box.max().array() + k_flesh, yaw, k_start_pitch,
                        static_cast<float>(picture_.width) / static_cast<float>(picture_.height));
   picture_.camera = orbit_.camera();
@@ -295,19 +295,18 @@ void Editor::run(EditorCommand command) {
 
 void Editor::scrub(double time) {
   EditState next = state();
+  if (next.loose && !next.keys.empty()) message_ = "the pose in hand was in no key; Ctrl+Z brings it back";
   seek(next, skeleton(), time);
   document_.show(std::move(next));
 }
 
-void Editor::show_key_moved(int key, double time, bool with_later) {
+int Editor::show_key_moved(int key, double time, bool with_later) {
   EditState next = state();
-  if (with_later) {
-    retime_from(next, key, time);
-    next.time = next.keys[key].time;
-  } else {
-    next.time = next.keys[move_key(next, key, time)].time;
-  }
+  if (with_later) retime_from(next, key, time);
+  else key = move_key(next, key, time);
+  next.time = next.keys[key].time;
   document_.show(std::move(next));
+  return key;
 }
 
 void Editor::rename_key(int key, const std::string& name) {

@@ -47,7 +47,7 @@ public:
 
   // The timeline. A scrub or a move is a gesture: keep() ends it.
   void scrub(double time);
-  void show_key_moved(int key, double time, bool with_later);
+  int show_key_moved(int key, double time, bool with_later); ///< the key's index then
   void keep();
   void rename_key(int key, const std::string& name);
   void set_interpolation(rig::Interpolation interpolation);

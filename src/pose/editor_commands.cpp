@@ -35,7 +35,7 @@ constexpr std::array<CommandEntry, 33> k_table = {{
     {delete_key, "Keys", "Delete the key", "Delete"},
     {toggle_airborne, "Keys", "The key is in the air", "A"},
     {toggle_loop, "Keys", "The clip is a loop", "L"},
-    {toggle_onion_skin, "View", "Keys before and after (onion skin)", "N"},
+    {toggle_onion_skin, "View", "Onion skin: key before blue, after orange", "N"},
     {toggle_body, "View", "Body", "B"},
     {toggle_joints, "View", "Joints", "J"},
     {front_view, "View", "From the front", "1"},
