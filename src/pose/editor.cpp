@@ -13,6 +13,7 @@ namespace {
 constexpr double k_joint_reach = 14.0, k_ring_reach = 7.0; // px of a common display, around the pointer
 constexpr double k_sure_reach = 6.0;                       // px: a joint this near wins over a ring
 constexpr double k_twist_step = 5.0;                       // degrees a key press
+constexpr float k_below = 0.1f;                            // of the height, left free below
 constexpr float k_start_yaw = 0.35f, k_start_pitch = 0.08f;
 constexpr float k_flesh = 0.15f; // m around the joints: a head, a hand
 
@@ -43,7 +44,8 @@ void Editor::resize(int width, int height, float pixel_scale) {
 void Editor::look(float yaw) {
   Eigen::AlignedBox3f box;
   for (const Transform& joint : model_from_joint()) box.extend(joint.translation.cast<float>());
-  box.min().y() = std::min(box.min().y(), 0.0f); // the ground is seen too
+  // The ground is seen too, above the timeline.
+  box.min().y() = std::min(box.min().y(), 0.0f) - k_below * box.sizes().y();
   orbit_ = frame_orbit(box.min().array() - k_flesh, box.max().array() + k_flesh, yaw, k_start_pitch,
                        static_cast<float>(picture_.width) / static_cast<float>(picture_.height));
   picture_.camera = orbit_.camera();

@@ -7,11 +7,13 @@
 namespace tutu::app {
 namespace {
 
-constexpr float k_margin = 12; // px, between panels and the window's edge
 const ImVec4 k_accent = {0.62f, 0.10f, 0.22f, 1};
 constexpr ImGuiWindowFlags k_panel_flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_AlwaysAutoResize |
                                            ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
                                            ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
+
+/// Between panels and the window's edge, px.
+float margin() { return 0.9f * ImGui::GetFontSize(); }
 
 struct MouseLine {
   const char *what, *does;
@@ -72,7 +74,7 @@ void toggle(Editor& editor, EditorCommand command) {
 }
 
 void draw_joint(Editor& editor) {
-  ImGui::SetNextWindowPos({k_margin, ImGui::GetFrameHeight() + k_margin});
+  ImGui::SetNextWindowPos({margin(), ImGui::GetFrameHeight() + margin()});
   ImGui::Begin("joint", nullptr, k_panel_flags);
   if (const auto joint = editor.selected()) {
     ImGui::TextColored(k_accent, "%s", std::string(rig::bare_joint_name(editor.skeleton().names[*joint])).c_str());
@@ -94,7 +96,7 @@ void draw_joint(Editor& editor) {
 void draw_message(const Editor& editor) {
   if (editor.message().empty()) return;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({0.5f * screen.x, ImGui::GetFrameHeight() + k_margin}, ImGuiCond_Always, {0.5f, 0});
+  ImGui::SetNextWindowPos({0.5f * screen.x, ImGui::GetFrameHeight() + margin()}, ImGuiCond_Always, {0.5f, 0});
   ImGui::SetNextWindowBgAlpha(0.92f);
   ImGui::Begin("message", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
   ImGui::TextUnformatted(editor.message().c_str());
@@ -123,9 +125,9 @@ void draw_help(const Editor& editor) {
   for (std::size_t i = 0; i < half; ++i) {
     line(table[i].keys, table[i].label, 5 * em);
     if (i + half >= table.size()) continue;
-    ImGui::SameLine(27 * em);
+    ImGui::SameLine(29 * em);
     ImGui::TextColored(k_accent, "%s", table[i + half].keys);
-    ImGui::SameLine(32 * em);
+    ImGui::SameLine(34 * em);
     ImGui::TextUnformatted(table[i + half].label);
   }
   ImGui::End();
@@ -162,7 +164,7 @@ void set_pose_style() {
   ImGuiStyle& style = ImGui::GetStyle();
   style.Colors[ImGuiCol_TextDisabled] = {0.33f, 0.37f, 0.45f, 1};
   style.Colors[ImGuiCol_MenuBarBg] = {1, 1, 1, 0.85f};
-  style.Colors[ImGuiCol_PopupBg] = {1, 1, 1, 0.97f};
+  style.Colors[ImGuiCol_PopupBg] = {1, 1, 1, 1};
   style.Colors[ImGuiCol_TitleBg] = style.Colors[ImGuiCol_TitleBgActive] = {0.93f, 0.94f, 0.96f, 1};
   style.Colors[ImGuiCol_ModalWindowDimBg] = {0.2f, 0.25f, 0.35f, 0.35f};
 }

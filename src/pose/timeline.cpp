@@ -11,8 +11,6 @@
 namespace tutu::app {
 namespace {
 
-constexpr float k_margin = 12; // px, to the window's edge
-
 /// The least of 1, 2, 5 times a power of ten that is at least `least`.
 double round_step(double least) {
   const double power = std::pow(10.0, std::floor(std::log10(least)));
@@ -138,8 +136,9 @@ void Timeline::draw_track(Editor& editor) {
 
 void Timeline::draw(Editor& editor) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({k_margin, screen.y - k_margin}, ImGuiCond_Always, {0, 1});
-  ImGui::SetNextWindowSize({screen.x - 2 * k_margin, 0});
+  const float margin = 0.9f * ImGui::GetFontSize(); // to the window's edge
+  ImGui::SetNextWindowPos({margin, screen.y - margin}, ImGuiCond_Always, {0, 1});
+  ImGui::SetNextWindowSize({screen.x - 2 * margin, 0});
   ImGui::Begin("timeline", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);

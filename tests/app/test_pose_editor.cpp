@@ -285,6 +285,32 @@ TEST_F(PoseEditor, LimitsHold) {
             "/limits/0/twist_degrees");
 }
 
+TEST_F(PoseEditor, WithTheShippedLimitsKneesAndElbowsBendOneWay) {
+  const std::vector<rig::JointLimit> limits =
+      read_joint_limits(test::source_file("assets/limits/dancer.json"), character_.skeleton);
+  ASSERT_EQ(limits.size(), 4U);
+  open(limits);
+  editor_->run(side_view); // forwards is to the left
+  const auto lift = [&](const char* foot, double pixels) {
+    drag(foot, {pixels, -20});
+    const double ahead = place(foot).z() - place("LeftLeg").z();
+    editor_->run(undo);
+    return ahead;
+  };
+  const double at_rest = place("LeftFoot").z() - place("LeftLeg").z();
+  const double back = lift("LeftFoot", 40), front = lift("LeftFoot", -40);
+  EXPECT_LT(std::min(back, front), at_rest - 0.05);
+  EXPECT_LT(std::max(back, front), at_rest + 0.01);
+  // What elbows may do they do forwards.
+  editor_->run(front_view);
+  editor_->run(rest_pose);
+  editor_->run(toggle_ik);
+  for (const char* hand : {"LeftHand", "RightHand"}) {
+    drag(hand, {hand[0] == 'L' ? -20 : 20, -40});
+    EXPECT_GT(place(hand).z(), place(hand[0] == 'L' ? "LeftForeArm" : "RightForeArm").z()) << hand;
+  }
+}
+
 TEST_F(PoseEditor, KeysAreSavedWrittenAndReadAgain) {
   editor_->run(save_key);
   drag("LeftHand", {5, -20});
@@ -306,6 +332,38 @@ TEST_F(PoseEditor, KeysAreSavedWrittenAndReadAgain) {
   EXPECT_FALSE(same_pose(pose(), second));
   editor_->run(EditorCommand::next_key);
   EXPECT_TRUE(same_pose(pose(), second));
+}
+
+TEST_F(PoseEditor, TheTimelineMovesNamesDuplicatesAndDeletesKeys) {
+  for (int k = 0; k < 3; ++k) {
+    drag("LeftHand", {2, -6});
+    editor_->run(save_key);
+  }
+  const std::size_t depth = editor_->document().undo_depth();
+  int key = 1; // 0, 0.5, 1 s
+  for (const double time : {0.6, 0.9, 1.2}) key = editor_->show_key_moved(key, time, false);
+  editor_->keep();
+  EXPECT_EQ(key, 2);
+  EXPECT_EQ(editor_->document().undo_depth(), depth + 1); // one drag, one step
+  EXPECT_EQ(editor_->current_key(), 2);
+  editor_->show_key_moved(1, 2.0, true); // and all later ones
+  editor_->keep();
+  EXPECT_NEAR(editor_->state().keys[2].time, 2.2, 1e-12);
+  editor_->rename_key(1, "leap");
+  editor_->run(toggle_airborne);
+  EXPECT_TRUE(editor_->state().keys[1].airborne);
+  editor_->run(EditorCommand::duplicate_key);
+  ASSERT_EQ(editor_->state().keys.size(), 4U);
+  EXPECT_NEAR(editor_->state().time, 2.1, 1e-12);
+  EXPECT_EQ(editor_->state().keys[2].name, "leap");
+  EXPECT_TRUE(same_pose(pose(), *editor_->state().keys[1].pose));
+  editor_->run(EditorCommand::delete_key);
+  EXPECT_EQ(editor_->state().keys.size(), 3U);
+  editor_->run(EditorCommand::delete_key);
+  EXPECT_THAT(editor_->message(), ::testing::HasSubstr("on no key"));
+  drag("LeftHand", {2, -6});
+  editor_->scrub(0.5);
+  EXPECT_THAT(editor_->message(), ::testing::HasSubstr("Ctrl+Z"));
 }
 
 TEST_F(PoseEditor, CopiesMirrorsAndRests) {
