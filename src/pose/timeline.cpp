@@ -64,7 +64,8 @@ void Timeline::draw_row(Editor& editor) {
   command_button(editor, EditorCommand::duplicate_key, "duplicate");
   command_button(editor, EditorCommand::delete_key, "delete");
   edit_key(editor);
-  ImGui::SameLine(ImGui::GetWindowWidth() - 12.5f * em);
+  constexpr float k_one_row = 58, k_interval = 12.5; // em; where there is no room it has a row of its own
+  if (ImGui::GetWindowWidth() > k_one_row * em) ImGui::SameLine(ImGui::GetWindowWidth() - k_interval * em);
   ImGui::AlignTextToFramePadding();
   ImGui::TextUnformatted("next after");
   ImGui::SameLine();

@@ -211,7 +211,7 @@ TEST_F(PoseWindow, AWristIsDraggedSavedScrubbedAndSurvivesAKill_slow) {
   if (HasFatalFailure()) return;
   EXPECT_EQ(state_["keys"].size(), 3U);
   EXPECT_TRUE(same_pose(pose(), *written.keys[0].pose));
-  ASSERT_TRUE(xdotool(fmt::format("mousemove {} {} sleep 0.1 mousedown 1", k_width / 3, k_height - 38)));
+  ASSERT_TRUE(xdotool(fmt::format("mousemove {} {} mousedown 1", k_width / 4, k_height - 38)));
   ASSERT_TRUE(wait_for([](const json& state) { return state["time"] > 0.0; }));
   ASSERT_TRUE(xdotool("mouseup 1"));
   ASSERT_TRUE(wait_for("undo_depth", 1));
@@ -219,6 +219,20 @@ TEST_F(PoseWindow, AWristIsDraggedSavedScrubbedAndSurvivesAKill_slow) {
   Pose between(before.size());
   rig::sample(rig::build_clip(rig::read_clip(clip()), dancer()), number(state_["time"]), between);
   EXPECT_TRUE(same_pose(pose(), between));
+
+  // A key is dragged along the timeline: the middle one, a third of the way from 0 to 1.5 s.
+  const int key_x = 172, along = 40;
+  ASSERT_TRUE(xdotool(fmt::format("mousemove {} {} mousedown 1", key_x, k_height - 38)));
+  ASSERT_TRUE(wait_for("time", 0.5));
+  ASSERT_TRUE(xdotool(fmt::format("mousemove {} {}", key_x + along, k_height - 38)));
+  ASSERT_TRUE(wait_for([](const json& state) { return state["keys"][1]["time"] > 0.55; }));
+  ASSERT_TRUE(xdotool("mouseup 1"));
+  ASSERT_TRUE(wait_for("undo_depth", 2));
+  EXPECT_LT(number(state_["keys"][1]["time"]), 0.75);
+  EXPECT_EQ(state_["dirty"], true);
+  press("ctrl+z");
+  ASSERT_TRUE(wait_for("undo_depth", 1));
+  EXPECT_EQ(state_["dirty"], false);
 
   // Killed in the middle of a drag: the drag before it is offered again.
   const auto [from_x, from_y] = pixel_of("LeftHand");
