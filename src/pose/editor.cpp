@@ -17,12 +17,26 @@ constexpr float k_below = 0.1f;                            // of the height, lef
 constexpr float k_start_yaw = 0.35f, k_start_pitch = 0.08f;
 constexpr float k_flesh = 0.15f; // m around the joints: a head, a hand
 
+/// m; the ground is at 0 for whoever stands there to a finger's breadth, else below the lowest point of the body at
+/// rest.
+float ground_of(const rig::Character& character) {
+  constexpr float k_finger = 0.02f;
+  std::vector<rig::SkinMatrix> palette(character.skin.slot_count());
+  std::vector<Vec3f> positions(character.mesh.positions.size());
+  rig::skinning_palette(character.skin, rig::rest_model(character.skeleton), palette);
+  rig::skin_vertices(character.mesh, character.skin, palette, positions, {});
+  float lowest = positions.empty() ? 0.0f : positions.front().y();
+  for (const Vec3f& p : positions) lowest = std::min(lowest, p.y());
+  return std::abs(lowest) < k_finger ? 0.0f : lowest;
+}
+
 } // namespace
 
 Editor::Editor(const rig::Character& character, EditState start, const std::filesystem::path& clip_file,
                std::vector<rig::JointLimit> limits)
     : character_(character), limbs_(find_limbs(character.skeleton)), clip_file_(clip_file), autosave_(clip_file),
-      document_(std::move(start)), left_behind_(autosave_.found(character.skeleton)) {
+      document_(std::move(start)), left_behind_(autosave_.found(character.skeleton)),
+      ground_height_(ground_of(character)) {
   drag_settings_.limits = std::move(limits);
   if (left_behind_) question_ = EditorQuestion::take_up_autosave;
 }
@@ -45,7 +59,7 @@ void Editor::look(float yaw) {
   Eigen::AlignedBox3f box;
   for (const Transform& joint : model_from_joint()) box.extend(joint.translation.cast<float>());
   // The ground is seen too, above the timeline.
-  box.min().y() = std::min(box.min().y(), 0.0f) - k_below * box.sizes().y();
+  box.min().y() = std::min(box.min().y(), ground_height_) - k_below * box.sizes().y();
   orbit_ = frame_orbit(box.min().array() - k_flesh, box.max().array() + k_flesh, yaw, k_start_pitch,
                        static_cast<float>(picture_.width) / static_cast<float>(picture_.height));
   picture_.camera = orbit_.camera();

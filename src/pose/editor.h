@@ -71,6 +71,7 @@ public:
   std::optional<int> current_key() const { return key_at(state(), state().time); }
   double interval() const { return interval_; }
   float pixel_scale() const { return pixel_scale_; }
+  float ground_height() const { return ground_height_; } ///< m, where she stands at rest
   EditorQuestion question() const { return question_; }
   bool done() const { return done_; }
   std::vector<Transform> model_from_joint() const;
@@ -106,7 +107,7 @@ private:
   double x_ = 0.0, y_ = 0.0;
   OrbitCamera orbit_;
   Picture picture_;
-  float pixel_scale_ = 1.0f;
+  float pixel_scale_ = 1.0f, ground_height_ = 0.0f;
   EditorView view_;
   EditorQuestion question_ = EditorQuestion::none;
   double interval_ = 0.5; ///< s between a key and the next one saved

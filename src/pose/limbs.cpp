@@ -1,6 +1,7 @@
 #include "src/pose/limbs.h"
 
 #include "rig/body_regions.h"
+#include "rig/strong_poses.h"
 
 #include <algorithm>
 
@@ -19,7 +20,13 @@ std::vector<BodyLimb> find_limbs(const rig::Skeleton& skeleton) {
     std::vector<int> joints; // of the limb, from the lowest up
     std::vector<double> way; // m from the end
     double length = skeleton.rest_local[end].translation.norm();
-    for (int j = above; j != rig::k_no_parent && regions[j] == regions[above]; j = skeleton.parents[j]) {
+    const auto belongs = [&](int j) {
+      if (regions[j] == regions[above]) return true;
+      // A hip that is called so is torso, and yet bends the leg: where it has the limb's side.
+      return joints.size() == 1 && rig::side_of(skeleton.names[j]) != rig::Side::middle &&
+             rig::side_of(skeleton.names[j]) == rig::side_of(skeleton.names[end]);
+    };
+    for (int j = above; j != rig::k_no_parent && belongs(j); j = skeleton.parents[j]) {
       joints.push_back(j);
       way.push_back(length);
       length += skeleton.rest_local[j].translation.norm();

@@ -13,7 +13,7 @@ constexpr ImGuiWindowFlags k_panel_flags = ImGuiWindowFlags_NoDecoration | ImGui
                                            ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav;
 
 /// Between panels and the window's edge, px.
-float margin() { return 0.9f * ImGui::GetFontSize(); }
+float margin() { return ImGui::GetFontSize(); }
 
 struct MouseLine {
   const char *what, *does;

@@ -8,6 +8,7 @@ PoseView::PoseView(const rig::Character& character)
 
 FrameView PoseView::frame(const Editor& editor) {
   FrameView view;
+  view.ground_height = editor.ground_height();
   if (!editor.view().body) return view;
   rig::skinning_palette(character_->skin, editor.model_from_joint(), palette_);
   rig::skin_vertices(character_->mesh, character_->skin, palette_, positions_, normals_);

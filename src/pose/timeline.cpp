@@ -34,7 +34,8 @@ void Timeline::edit_key(Editor& editor) {
   const auto key = editor.current_key();
   if (!key) {
     ImGui::AlignTextToFramePadding();
-    ImGui::TextDisabled("%.2f s, between keys", editor.state().time);
+    if (editor.state().keys.empty()) ImGui::TextDisabled("no keys yet");
+    else ImGui::TextDisabled("%.2f s, between keys", editor.state().time);
     named_key_.reset();
     return;
   }
@@ -137,7 +138,7 @@ void Timeline::draw_track(Editor& editor) {
 
 void Timeline::draw(Editor& editor) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  const float margin = 0.9f * ImGui::GetFontSize(); // to the window's edge
+  const float margin = ImGui::GetFontSize(); // to the window's edge
   ImGui::SetNextWindowPos({margin, screen.y - margin}, ImGuiCond_Always, {0, 1});
   ImGui::SetNextWindowSize({screen.x - 2 * margin, 0});
   ImGui::Begin("timeline", nullptr,

@@ -256,7 +256,7 @@ TEST_F(PoseEditor, LimitsHold) {
       R"({"limits": [{"joint": "LeftForeArm", "axis": [0, 1, 0], "swing_degrees": 10, "twist_degrees": [-5, 8]}]})");
   open(read_joint_limits(folder_ / "limits.json", character_.skeleton));
   const auto swing = [&] {
-    const Quat& turn = pose()[joint("LeftForeArm")].rotation; // at rest the identity
+    const Quat turn = pose()[joint("LeftForeArm")].rotation; // at rest the identity
     return 2.0 * std::asin(std::min(1.0, std::hypot(turn.x(), turn.z())));
   };
   drag("LeftHand", {3, -3});
@@ -435,6 +435,20 @@ TEST_F(PoseEditor, TellsItsStateToMachines) {
   EXPECT_EQ(json["pose"].size(), character_.skeleton.names.size());
   EXPECT_DOUBLE_EQ(json["pose"][joint("LeftForeArm")]["rotation"][3].get<double>(),
                    pose()[joint("LeftForeArm")].rotation.w());
+}
+
+TEST(PoseLimbs, AreFoundOnOtherCharactersToo) {
+  const auto file = test::assimp_model("X/BCN_Epileptic.X");
+  if (!exists(file)) GTEST_SKIP() << "assimp-testmodels is not installed";
+  for (const rig::Skeleton& skeleton : {rig::import_character(file).character.skeleton, dancer().skeleton}) {
+    const std::vector<BodyLimb> limbs = find_limbs(skeleton);
+    EXPECT_EQ(limbs.size(), 4U);
+    EXPECT_EQ(std::count_if(limbs.begin(), limbs.end(), [](const BodyLimb& limb) { return limb.leg; }), 2);
+    for (const BodyLimb& limb : limbs) {
+      EXPECT_EQ(limb_ending_at(limbs, limb.limb.end)->limb.lower, limb.limb.lower);
+      EXPECT_EQ(limb_bending_at(limbs, limb.limb.lower)->limb.end, limb.limb.end);
+    }
+  }
 }
 
 TEST(PoseCommands, EveryKeyIsThereOnceAndEveryCommandInAMenu) {
