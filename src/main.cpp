@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::simple);
   int status = k_ok;
   add_play(app, status);
+  add_pose(app, status);
   add_drape(app, status);
   add_fit(app, status);
   add_inspect(app, status);

@@ -20,6 +20,7 @@ void add_inspect(CLI::App& app, int& status);
 void add_mannequin(CLI::App& app, int& status);
 void add_plan(CLI::App& app, int& status);
 void add_play(CLI::App& app, int& status);
+void add_pose(CLI::App& app, int& status);
 void add_stability(CLI::App& app, int& status);
 void add_validate(CLI::App& app, int& status);
 
