@@ -32,7 +32,7 @@ struct Options {
   std::string out, json;
   std::vector<int> at;
   std::vector<std::string> show, hide;
-  std::optional<std::string> overlay;
+  std::vector<std::string> overlay;
   double tolerance_mm = 1000.0 * ErrorScale().tolerance;
   bool worst = false;
   std::string size = "1280x720";
@@ -73,27 +73,21 @@ std::pair<int, int> size_of(const std::string& text) {
   return {width, height};
 }
 
-const std::vector<std::pair<std::string, bool Layers::*>> k_layers = {
-    {"body", &Layers::body},           {"cloth", &Layers::cloth},         {"ground", &Layers::ground},
-    {"wireframe", &Layers::wireframe}, {"particles", &Layers::particles}, {"skeleton", &Layers::skeleton},
-    {"proxies", &Layers::proxies},
-};
-
 std::vector<std::string> layer_names() {
   std::vector<std::string> names;
-  for (const auto& layer : k_layers) names.push_back(layer.first);
+  for (const LayerInfo& layer : k_layers) names.push_back(layer.name);
   return names;
 }
 
 Layers layers_of(const Options& options) {
   Layers layers;
   const auto set = [&](const std::vector<std::string>& names, bool on) {
-    for (const auto& [name, member] : k_layers)
-      if (std::find(names.begin(), names.end(), name) != names.end()) layers.*member = on;
+    for (const LayerInfo& layer : k_layers)
+      if (std::find(names.begin(), names.end(), layer.name) != names.end()) layers.*layer.member = on;
   };
   set(options.show, true);
+  set(options.overlay, true);
   set(options.hide, false);
-  layers.proxy_error = options.overlay.has_value();
   return layers;
 }
 
@@ -209,7 +203,7 @@ int run(const Options& options) {
   if (headless) catch_interrupt();
   Scene scene = options.scene.load();
   if (options.fixed_substeps) scene.description.adaptive_substeps = false;
-  if ((options.overlay || options.worst) && scene.proxies.empty())
+  if ((layers_of(options).proxy_error || options.worst) && scene.proxies.empty())
     throw InputError(scene.description.file.string(), "/proxies", "none", "proxies to show the error of");
   if (const std::string warning = warning_of(scene); !warning.empty())
     fmt::print(stderr, "warning: outside of what is safe (see tutu stability): {}\n", warning);
@@ -254,8 +248,9 @@ void add_play(CLI::App& app, int& status) {
       ->check(CLI::IsMember(layer_names()));
   command
       ->add_option("--overlay", options->overlay,
-                   "proxy-error: the skin in the colours of its distance from the proxies")
-      ->check(CLI::IsMember({"proxy-error"}));
+                   "proxy-error: the skin in the colours of its distance from the proxies; penetration: the cloth in "
+                   "those of its depth in the true body")
+      ->check(CLI::IsMember({"proxy-error", "penetration"}));
   command->add_option("--tolerance-mm", options->tolerance_mm, "Of the overlay: what is nearer than this stays white")
       ->check(finite_number())
       ->check(CLI::Range(0.1, 1000.0))

@@ -12,6 +12,7 @@ namespace tutu::app {
 namespace {
 
 constexpr float k_particle_radius = 0.0035f; // m
+constexpr float k_mark_radius = 0.0055f;     // m
 constexpr float k_floor_radius = 30.0f;      // m; its edge is long since one with the backdrop
 constexpr float k_view_reach = 60.0f;        // m beyond the target
 constexpr float k_widest_scene = 25.0f;      // m from the target: what flew further casts no shadow
@@ -92,9 +93,11 @@ void Renderer::draw(const FrameView& view, const Camera& camera, int width, int 
   parts.draw_backdrop(fit);
   parts.draw_wires(surfaces, fit);
   const float pixels_per_metre = 0.5f * h / std::tan(0.5f * camera.vertical_fov);
+  parts.overlay.draw_threads(view.threads, fit);
   parts.overlay.draw_points(view.points, k_particle_radius, pixels_per_metre, fit);
   parts.overlay.draw_capsules(view.capsules, fit);
   parts.overlay.draw_lines(view.lines, fit);
+  parts.overlay.draw_marks(view.marks, k_mark_radius, pixels_per_metre, fit);
   glBindVertexArray(0);
 }
 

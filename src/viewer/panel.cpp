@@ -13,20 +13,6 @@ namespace {
 constexpr float k_margin = 12;       // px, between panels and the window's edge
 constexpr double k_smoothing = 0.08; // share of the newest value
 
-struct LayerKey {
-  char key;
-  const char* label;
-  bool Layers::*layer;
-};
-constexpr std::array<LayerKey, 8> k_layer_keys = {{{'b', "body", &Layers::body},
-                                                   {'c', "cloth", &Layers::cloth},
-                                                   {'g', "ground", &Layers::ground},
-                                                   {'w', "wireframe", &Layers::wireframe},
-                                                   {'p', "particles", &Layers::particles},
-                                                   {'k', "skeleton", &Layers::skeleton},
-                                                   {'x', "proxies", &Layers::proxies},
-                                                   {'e', "proxy error", &Layers::proxy_error}}};
-
 struct HelpLine {
   const char *keys, *what;
 };
@@ -61,14 +47,14 @@ void apply_character(unsigned character, ViewerState& state) {
   if (character == ']') scale_time(state, 2.0f);
   if (character == 'r' || character == 'R') state.reset_camera = true;
   if (character == 'j' || character == 'J') state.seek_worst = true;
-  for (const LayerKey& layer : k_layer_keys)
+  for (const LayerInfo& layer : k_layers)
     if (character == static_cast<unsigned>(layer.key) || character == static_cast<unsigned>(layer.key - 'a' + 'A'))
-      state.layers.*layer.layer = !(state.layers.*layer.layer);
+      state.layers.*layer.member = !(state.layers.*layer.member);
 }
 
 void draw_layers(ViewerState& state) {
-  for (const LayerKey& layer : k_layer_keys) {
-    ImGui::Checkbox(layer.label, &(state.layers.*layer.layer));
+  for (const LayerInfo& layer : k_layers) {
+    ImGui::Checkbox(layer.name, &(state.layers.*layer.member));
     ImGui::SameLine(ImGui::GetFontSize() * 9);
     ImGui::TextDisabled("%c", layer.key - 'a' + 'A');
   }

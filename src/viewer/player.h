@@ -2,19 +2,13 @@
 #pragma once
 
 #include "src/render/frame_view.h"
+#include "src/scene/layers.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace tutu::app {
-
-/// What is drawn.
-struct Layers {
-  bool body = true, cloth = true, ground = true;
-  bool wireframe = false, particles = false, skeleton = false, proxies = false;
-  bool proxy_error = false; ///< the skin in the colours of its distance from the proxies
-};
 
 /// Milliseconds of one stage in the last frame.
 struct StageTime {

@@ -1,0 +1,35 @@
+#include "src/render/legend.h"
+
+#include "src/render/image_text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tutu::app {
+
+std::array<float, 3> srgb_of(const Colour& linear) {
+  std::array<float, 3> result{};
+  std::transform(linear.begin(), linear.end(), result.begin(),
+                 [](float c) { return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f; });
+  return result;
+}
+
+void draw_legend(std::span<const LegendEntry> legend, Image& image) {
+  constexpr int k_least_width = 300, k_least_height = 200; // px
+  if (legend.empty() || image.width < k_least_width || image.height < k_least_height) return;
+  const int zoom = std::max(1, std::min(image.width / 640, image.height / 480));
+  const int line = zoom * (k_text_height + 2), margin = 6 * zoom, swatch = 10 * zoom;
+  int widest = 0;
+  for (const LegendEntry& entry : legend) widest = std::max(widest, text_width(entry.text, zoom));
+  blend_box(image, margin, margin, widest + swatch + 3 * margin, static_cast<int>(legend.size()) * line + 2 * margin,
+            {1.0f, 1.0f, 1.0f}, 0.82f);
+  int top = 2 * margin;
+  for (const LegendEntry& entry : legend) {
+    blend_box(image, 2 * margin, top + 2 * zoom, swatch, swatch - zoom, {0.13f, 0.15f, 0.19f}, 0.6f);
+    blend_box(image, 2 * margin + 1, top + 2 * zoom + 1, swatch - 2, swatch - zoom - 2, srgb_of(entry.colour), 1.0f);
+    draw_text(image, 3 * margin + swatch, top, entry.text, zoom, {0.13f, 0.15f, 0.19f});
+    top += line;
+  }
+}
+
+} // namespace tutu::app
