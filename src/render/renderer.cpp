@@ -55,7 +55,7 @@ struct Renderer::Parts {
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
 Renderer::~Renderer() = default;
 
-void Renderer::draw(const FrameView& view, const Camera& camera, int width, int height, float pixel_scale) {
+void Renderer::draw(const FrameView& view, const Camera& camera, int width, int height, float pixel_scale, int left) {
   Parts& parts = *parts_;
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
@@ -75,7 +75,7 @@ void Renderer::draw(const FrameView& view, const Camera& camera, int width, int 
   parts.shadows.draw(surfaces, light, view.ground);
 
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
-  glViewport(0, 0, width, height);
+  glViewport(left, 0, width, height);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);

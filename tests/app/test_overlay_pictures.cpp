@@ -1,23 +1,21 @@
 // Each overlay in a picture: it changes a share of the pixels, and looks as its reference does. To make the references
 // anew, after having looked at them: TUTU_WRITE_GOLDEN=1 build/release/tests/test_app
 // --gtest_filter='OverlayPictures.*'
-#include "rig/file_io.h"
 #include "src/export/png.h"
 #include "src/render/offscreen.h"
 #include "src/scene/scene_view.h"
 #include "tests/support/paths.h"
+#include "tests/support/read_png.h"
 #include "tests/support/small_scene.h"
 
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <optional>
-#include <stb/stb_image.h>
 
 namespace tutu::app {
 namespace {
 
 constexpr int k_width = 160, k_height = 120;
-constexpr int k_seen = 12;            // of 3 x 255, between two pixels: a difference one can see
 constexpr double k_off_golden = 0.01; // share of pixels that may differ from the reference: another driver's edges
 
 struct Expected {
@@ -30,30 +28,6 @@ constexpr Expected k_expected[] = {
     {"attachments", 0.002, 0.1}, {"tiles", 0.01, 0.4},      {"contacts", 0.005, 0.3}, {"proxy-error", 0.01, 0.5},
     {"penetration", 0.02, 0.5},
 };
-
-double share_changed(const Image& a, const Image& b) {
-  int changed = 0;
-  for (int y = 0; y < a.height; ++y)
-    for (int x = 0; x < a.width; ++x) {
-      int difference = 0;
-      for (int c = 0; c < 3; ++c) difference += std::abs(a.at(x, y)[c] - b.at(x, y)[c]);
-      changed += difference > k_seen;
-    }
-  return static_cast<double>(changed) / (a.width * a.height);
-}
-
-std::optional<Image> read_png(const std::filesystem::path& file) {
-  if (!exists(file)) return std::nullopt;
-  const std::string bytes = read_file(file);
-  int width = 0, height = 0, channels = 0;
-  stbi_uc* pixels = stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(bytes.data()),
-                                          static_cast<int>(bytes.size()), &width, &height, &channels, 3);
-  if (!pixels) return std::nullopt;
-  Image image{.width = width, .height = height, .pixels = {}};
-  image.pixels.assign(pixels, pixels + 3 * width * height);
-  stbi_image_free(pixels);
-  return image;
-}
 
 TEST(OverlayPictures, EachChangesItsShareAndLooksAsItsReference_slow) {
   std::optional<Offscreen> offscreen;
@@ -84,15 +58,15 @@ TEST(OverlayPictures, EachChangesItsShareAndLooksAsItsReference_slow) {
     for (const LayerInfo& layer : k_layers)
       if (std::string(layer.name) == expected.layer) layers.*layer.member = true;
     const Image image = offscreen->draw(view.frame(state, skin, layers), camera);
-    const double share = share_changed(plain, image);
+    const double share = test::share_changed(plain, image);
     EXPECT_GE(share, expected.least);
     EXPECT_LE(share, expected.most);
     const auto file = references / (std::string(expected.layer) + ".png");
     if (write) write_png(file, image);
-    const auto golden = read_png(file);
+    const auto golden = test::read_png(file);
     ASSERT_TRUE(golden) << "no reference " << file;
     ASSERT_EQ(golden->pixels.size(), image.pixels.size());
-    EXPECT_LE(share_changed(*golden, image), k_off_golden);
+    EXPECT_LE(test::share_changed(*golden, image), k_off_golden);
   }
   std::filesystem::remove_all(folder);
 }
