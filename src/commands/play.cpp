@@ -6,6 +6,7 @@
 #include "src/progress.h"
 #include "src/scene/posed_body.h"
 #include "src/scene/proxy_error.h"
+#include "src/scene/scene_override.h"
 #include "src/stability/warning.h"
 #include "src/viewer/window.h"
 
@@ -30,6 +31,8 @@ void check(const PlayOptions& options) {
   if (options.window && options.headless) throw InputError("", "--window", "it with --headless", "one of the two");
   if (options.window && (!options.at.empty() || options.no_pictures))
     throw InputError("", "--window", "it with --at or --no-pictures", "one of the two");
+  if (!options.against.empty() && !options.split.empty())
+    throw InputError("", "--against", "it with --split", "one of the two");
   if (options.worst && options.frames) throw InputError("", "--worst", "it with --frames", "one of the two");
   if (!options.at.empty() && options.no_pictures)
     throw InputError("", "--at", "it with --no-pictures", "one of the two");
@@ -62,16 +65,22 @@ int run(const PlayOptions& options) {
   const bool headless = !options.window && (options.headless || wants_files || !display_available());
   check(options);
   if (headless) catch_interrupt();
-  Scene scene = load(options);
-  const auto start = draped_start(scene);
+  Draped first{load(options), {}};
+  auto start = draped_start(first.scene);
   if (!start) return k_not_met;
-  if (!headless) return play_in_window(options, std::move(scene), *start);
-  if (!options.worst) return play_headless(options, scene, *start);
-  const std::optional<int> frame = find_worst(scene);
+  first.start = std::move(*start);
+  std::optional<Draped> other;
+  if (is_split(options)) {
+    other = other_scene(options, first);
+    if (!other) return k_not_met;
+  }
+  if (!headless) return play_in_window(options, std::move(first), std::move(other));
+  if (!options.worst) return play_headless(options, first, other ? &*other : nullptr);
+  const std::optional<int> frame = find_worst(first.scene);
   if (!frame) return k_not_met;
   PlayOptions at_worst = options;
   at_worst.at.push_back(*frame);
-  return play_headless(at_worst, scene, *start);
+  return play_headless(at_worst, first, other ? &*other : nullptr);
 }
 
 } // namespace
@@ -112,6 +121,37 @@ std::pair<int, int> size_of(const std::string& text) {
   return {width, height};
 }
 
+bool is_split(const PlayOptions& options) { return !options.against.empty() || !options.split.empty(); }
+
+std::string split_caption(const PlayOptions& options) {
+  return options.against.empty() ? options.split : std::filesystem::path(options.against).stem().string();
+}
+
+std::optional<Draped> other_scene(const PlayOptions& options, const Draped& first) {
+  PlayOptions other = options;
+  Draped draped;
+  if (!options.against.empty()) {
+    other.scene.scene = options.against;
+    draped.scene = load(other);
+  } else {
+    SceneDescription description = first.scene.description;
+    override_setting(description, options.split, "--split");
+    draped.scene = load_scene(description);
+  }
+  const int frames = first.scene.description.frames_per_second, others = draped.scene.description.frames_per_second;
+  if (frames != others)
+    throw InputError(draped.scene.description.file.string(), "/solver/frames_per_second", std::to_string(others),
+                     std::to_string(frames) + ", as the first scene has");
+  if (!options.split.empty()) { // the same start, so that what differs is the setting's doing
+    draped.start = first.start;
+    return draped;
+  }
+  auto start = draped_start(draped.scene);
+  if (!start) return std::nullopt;
+  draped.start = std::move(*start);
+  return draped;
+}
+
 int frames_to_play(const PlayOptions& options, const Scene& scene) {
   return options.frames ? *options.frames : frames_of(scene);
 }
@@ -133,6 +173,10 @@ void add_play(CLI::App& app, int& status) {
   command->add_option("--why", options->why,
                       "GARMENT:PARTICLE@FRAME: what that particle touches, what pulls on it, and when it first went "
                       "wrong (implies --headless)");
+  command->add_option("--against", options->against, "A second scene beside the first, in step");
+  command->add_option("--split", options->split,
+                      "KEY=VALUE: the same scene beside itself with that setting (substeps=4, solver=mass_spring, "
+                      "proxies=FILE), in step, the cloth coloured by how far it is apart");
   command->add_option("--at", options->at, "Only pictures of these frames, as PNG (implies --headless)")
       ->delimiter(',')
       ->check(CLI::Range(0, k_most_frames));

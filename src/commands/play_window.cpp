@@ -3,7 +3,7 @@
 #include "rig/file_io.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
-#include "src/scene/scene_player.h"
+#include "src/scene/split_player.h"
 #include "src/viewer/recent_files.h"
 #include "src/viewer/viewer.h"
 
@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 nlohmann::json json_of(ScenePlayer& player, const ViewerEnd& end) {
-  const Figures figures = *player.figures();
+  const Figures figures = player.figures().front();
   nlohmann::json json = {{"scene", player.title()},
                          {"frame", figures.frame},
                          {"state_hash", fmt::format("{:016x}", figures.state_hash)},
@@ -37,14 +37,9 @@ nlohmann::json json_of(ScenePlayer& player, const ViewerEnd& end) {
   return json;
 }
 
-struct Opened {
-  Scene scene;
-  std::vector<std::vector<Vec3>> start;
-};
-
 /// A scene file, or a character in its own motion without garments. Throws InputError.
-Opened open(const PlayOptions& options, const fs::path& file) {
-  Opened opened;
+Draped open(const PlayOptions& options, const fs::path& file) {
+  Draped opened;
   if (file.extension() == ".json") {
     PlayOptions other = options;
     other.scene.scene = file.string();
@@ -73,36 +68,48 @@ ViewerOptions viewer_options(const PlayOptions& options) {
   return viewer;
 }
 
+void set_up(ScenePlayer& player, const PlayOptions& options, const std::string& why, int frames) {
+  player.set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
+  if (why.empty()) return;
+  const WhyAddress address = why_address(player.scene(), why, frames);
+  player.pick(address.garment, address.particle);
+  player.go(address.frame);
+}
+
 } // namespace
 
-int play_in_window(const PlayOptions& options, Scene scene, std::vector<std::vector<Vec3>> start) {
+int play_in_window(const PlayOptions& options, Draped first, std::optional<Draped> other) {
   std::string message, why = options.why;
   ViewerOptions viewer = viewer_options(options);
   for (;;) {
-    if (!scene.description.file.empty()) remember_file(scene.description.file);
-    std::optional<std::string> next;
-    {
-      ScenePlayer player(scene, start, frames_to_play(options, scene));
-      player.set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
-      if (!why.empty()) {
-        const WhyAddress address = why_address(scene, why, frames_to_play(options, scene));
-        player.pick(address.garment, address.particle);
-        player.go(address.frame);
-      }
-      viewer.recent = recent_files();
-      viewer.message = message;
-      const ViewerEnd end = run_viewer(player, viewer);
-      if (!options.json.empty()) write_file(options.json, json_of(player, end).dump(2) + "\n");
-      viewer.layers = end.layers;
-      next = end.open;
+    remember_file(first.scene.description.file);
+    viewer.recent = recent_files();
+    viewer.message = message;
+    const int frames = frames_to_play(options, first.scene);
+    ViewerEnd end;
+    nlohmann::json json;
+    if (other) {
+      SplitPlayer player({&first.scene, first.start, first.scene.name()},
+                         {&other->scene, other->start, split_caption(options)}, frames);
+      for (ScenePlayer* side : {&player.left(), &player.right()}) set_up(*side, options, why, frames);
+      end = run_viewer(player, viewer);
+      json = json_of(player.left(), end);
+      json["against"] = json_of(player.right(), end);
+      json["against"]["setting"] = split_caption(options);
+    } else {
+      ScenePlayer player(first.scene, first.start, frames);
+      set_up(player, options, why, frames);
+      end = run_viewer(player, viewer);
+      json = json_of(player, end);
     }
-    if (!next) return k_ok;
+    if (!options.json.empty()) write_file(options.json, json.dump(2) + "\n");
+    if (!end.open) return k_ok;
+    viewer.layers = end.layers;
     why.clear();
     message.clear();
     try {
-      Opened opened = open(options, *next);
-      scene = std::move(opened.scene);
-      start = std::move(opened.start);
+      first = open(options, *end.open);
+      other.reset();
     } catch (const std::exception& error) { // the last scene goes on, and says why
       message = error.what();
     }

@@ -77,6 +77,7 @@ struct FrameView {
   float ground_height = 0.0f;
   std::optional<ErrorScale> error_scale; ///< surfaces' colours are errors: a picture gets a labelled bar
   std::vector<LegendEntry> legend;       ///< of lines, points and colours: written into pictures
+  std::string caption;                   ///< below the picture, "" for none
 };
 
 /// Looks from `eye` at `target`, +Y up.

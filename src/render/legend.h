@@ -14,4 +14,7 @@ std::array<float, 3> srgb_of(const Colour& linear);
 /// are too small for a legible list.
 void draw_legend(std::span<const LegendEntry> legend, Image& image);
 
+/// In the middle of the picture's lower edge; leaves pictures alone that are too small.
+void draw_caption(const std::string& caption, Image& image);
+
 } // namespace tutu::app

@@ -89,6 +89,7 @@ void Offscreen::draw(const FrameView& view, const Camera& camera, Image& image) 
   reduce(raw_, options_.supersample, image);
   if (view.error_scale) draw_error_bar(*view.error_scale, image);
   draw_legend(view.legend, image);
+  draw_caption(view.caption, image);
 }
 
 void reduce(const std::vector<std::uint8_t>& raw, int factor, Image& image) {

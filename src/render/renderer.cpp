@@ -86,6 +86,7 @@ void Renderer::draw(const FrameView& view, const Camera& camera, int width, int 
                                           view_from_world(camera),
                        .eye = camera.eye,
                        .picture = {w, h},
+                       .corner = {static_cast<float>(left), 0.0f},
                        .pixel_scale = pixel_scale};
   // Front to back, so that each pixel is shaded once.
   parts.draw_surfaces(surfaces, view, camera, light, fit);

@@ -6,6 +6,7 @@ const char* const k_preamble = R"glsl(#version 330 core
 uniform mat4 clip_from_world;
 uniform vec3 eye;
 uniform vec2 picture; // pixels
+uniform vec2 picture_corner; // of the picture in the framebuffer, pixels
 uniform float pixel_scale; // of these make one of the finished picture, in each direction
 )glsl";
 
@@ -31,7 +32,7 @@ vec3 encode(vec3 c) {
 // The studio's paper: bright behind the subject, a little darker towards the corners. It fills most of a picture, so it
 // is painted in sRGB straight away, and so is the floor: neither needs light added up.
 vec3 backdrop() {
-  vec2 p = (gl_FragCoord.xy - vec2(0.5, 0.54) * picture) / picture.y;
+  vec2 p = (gl_FragCoord.xy - picture_corner - vec2(0.5, 0.54) * picture) / picture.y;
   float r = min(dot(p, p) * 0.95, 1.0);
   return mix(vec3(0.906, 0.910, 0.918), vec3(0.722, 0.740, 0.775), r * (2.0 - r));
 }

@@ -32,6 +32,10 @@ void ScenePlayer::update() {
   if (auto frame = simulation_.frame(std::min(target_, extent.last))) shown_ = std::move(frame);
 }
 
+void ScenePlayer::show(int index) {
+  if (auto frame = simulation_.frame(index)) shown_ = std::move(frame);
+}
+
 void ScenePlayer::go(int frames) {
   target_ = std::clamp(target_ + frames, 0, frames_);
   simulation_.run_until(std::min(target_ + k_ahead, frames_));
@@ -80,8 +84,9 @@ std::vector<float> ScenePlayer::history() const {
   return ms;
 }
 
-std::optional<Figures> ScenePlayer::figures() {
+std::vector<Figures> ScenePlayer::figures() {
   Figures figures;
+  figures.ms = shown_->times.total();
   figures.frame = shown_->index;
   figures.recoveries = shown_->recoveries;
   for (std::size_t g = 0; g < shown_->garments.size(); ++g) {
@@ -94,7 +99,7 @@ std::optional<Figures> ScenePlayer::figures() {
     for (const Touch& touch : touches_) figures.deepest = std::max(figures.deepest, -touch.contact.distance);
   }
   figures.state_hash = state_hash(*shown_);
-  return figures;
+  return {figures};
 }
 
 std::optional<double> ScenePlayer::worst_time() {
@@ -112,11 +117,16 @@ void ScenePlayer::skin() {
 
 std::vector<FrameView> ScenePlayer::views(const Layers& layers) {
   update();
-  if (layers.body || layers.proxy_error || layers.penetration) skin();
   std::vector<FrameView> views;
-  views.push_back(view_.frame(*shown_, {body_positions_, body_normals_}, layers));
-  if (picked_) add_picked(views.front());
+  views.push_back(draw(layers));
   return views;
+}
+
+FrameView ScenePlayer::draw(const Layers& layers) {
+  if (layers.body || layers.proxy_error || layers.penetration) skin();
+  FrameView view = view_.frame(*shown_, {body_positions_, body_normals_}, layers, other_ ? &*other_ : nullptr);
+  if (picked_) add_picked(view);
+  return view;
 }
 
 void ScenePlayer::add_picked(FrameView& view) {
@@ -134,6 +144,14 @@ void ScenePlayer::add_picked(FrameView& view) {
 void ScenePlayer::pick(std::size_t garment, int particle) {
   picked_ = Picked{garment, particle};
   forget_first_wrong();
+}
+
+void ScenePlayer::pick_as(const ScenePlayer& other) {
+  picked_.reset();
+  const auto& same = other.picked_;
+  if (same && same->garment < scene_->garments.size() &&
+      same->particle < scene_->garments[same->garment].particle_count())
+    pick(same->garment, same->particle);
 }
 
 void ScenePlayer::forget_first_wrong() {
@@ -169,9 +187,9 @@ std::optional<Why> ScenePlayer::why_shown() {
   return why;
 }
 
-std::vector<std::string> ScenePlayer::why() {
+std::vector<std::vector<std::string>> ScenePlayer::why() {
   const std::optional<Why> why = why_shown();
-  return why ? text_of(*why) : std::vector<std::string>{};
+  return {why ? text_of(*why) : std::vector<std::string>{}};
 }
 
 } // namespace tutu::app

@@ -32,19 +32,27 @@ public:
   std::string recorded() const override;
   std::vector<StageTime> stage_times() const override;
   std::vector<float> history() const override;
-  std::optional<Figures> figures() override;
+  std::vector<Figures> figures() override;
   std::optional<double> worst_time() override;
   std::vector<FrameView> views(const Layers& layers) override;
   void pick(const Ray& ray) override;
   void pick(std::size_t garment, int particle);
-  std::vector<std::string> why() override;
+  std::vector<std::vector<std::string>> why() override;
+
+  const Scene& scene() const { return *scene_; }
+  const FrameState& shown() const { return *shown_; }
+  void update();                        ///< shows what was asked for, as far as it is there
+  void show(int index);                 ///< this frame for now, where it is recorded
+  FrameView draw(const Layers& layers); ///< what is shown
+  /// From now on paints how far cloth is from that of another state (k_apart_scale); copied.
+  void compare_with(const FrameState& other) { other_ = other; }
+  void pick_as(const ScenePlayer& other); ///< the same particle, where there is one
 
   Simulation::Extent extent() const { return simulation_.extent(); }
   /// Of the particle that is picked, at the frame that is shown, back to the start of what is recorded.
   std::optional<Why> why_shown();
 
 private:
-  void update();
   void jump(); ///< to the target
   void forget_first_wrong();
   void skin();
@@ -67,6 +75,7 @@ private:
   std::optional<FirstWrong> first_wrong_; ///< of it, among the frames up to
   int looked_at_ = -1;                    ///< this one
   std::vector<Touch> touches_;
+  std::optional<FrameState> other_;
   std::optional<double> worst_time_;
 };
 

@@ -72,6 +72,18 @@ void SceneView::colour_by_depth(const FrameState& state, const SkinView& skin) {
   }
 }
 
+void SceneView::colour_by_distance(const FrameState& state, const FrameState& other) {
+  for (std::size_t g = 0; g < cloth_.size(); ++g) {
+    cloth_[g].values.clear();
+    const std::vector<Vec3>& positions = state.garments[g].positions;
+    if (g >= other.garments.size() || other.garments[g].positions.size() != positions.size()) continue;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const Colour c = error_colour(k_apart_scale, (positions[i] - other.garments[g].positions[i]).norm());
+      cloth_[g].values.emplace_back(c[0], c[1], c[2]);
+    }
+  }
+}
+
 void SceneView::add_sheet(std::size_t g, const FrameState& state, const Layers& layers, FrameView& view) {
   const cloth::Garment& garment = scene_->garments[g];
   Sheet& sheet = cloth_[g];
@@ -110,7 +122,8 @@ void SceneView::add_sheet(std::size_t g, const FrameState& state, const Layers& 
   view.surfaces.push_back(surface);
 }
 
-FrameView SceneView::frame(const FrameState& state, const SkinView& skin, const Layers& layers) {
+FrameView SceneView::frame(const FrameState& state, const SkinView& skin, const Layers& layers,
+                           const FrameState* other) {
   FrameView view;
   const SceneDescription& description = scene_->description;
   view.ground = layers.ground && description.ground_height.has_value();
@@ -123,9 +136,16 @@ FrameView SceneView::frame(const FrameState& state, const SkinView& skin, const 
   }
   if (layers.body) add_body(scene_->character.mesh, skin, view, layers.wireframe, errors);
   if (layers.penetration) colour_by_depth(state, skin);
+  else if (other) colour_by_distance(state, *other);
   else
     for (Sheet& sheet : cloth_) sheet.values.clear();
   view.legend = legend_of(layers);
+  if (other && !layers.penetration)
+    for (const double mm : {1.0, 10.0, 50.0}) {
+      LegendEntry& entry = view.legend.emplace_back();
+      entry.text = fmt::format("{:g} mm apart", mm);
+      entry.colour = error_colour(k_apart_scale, 0.001 * mm);
+    }
   if (layers.penetration && !sideless_.empty()) view.legend.push_back({"no depths: " + sideless_, k_grey});
   for (std::size_t g = 0; g < cloth_.size(); ++g) {
     const cloth::Garment& garment = scene_->garments[g];
@@ -150,9 +170,9 @@ FrameView SceneView::frame(const FrameState& state, const SkinView& skin, const 
   return view;
 }
 
-FrameView SceneView::frame(const Session& session, const Layers& layers) {
+FrameView SceneView::frame(const Session& session, const Layers& layers, const FrameState* other) {
   capture(session, captured_);
-  return frame(captured_, {session.body_positions(), session.body_normals()}, layers);
+  return frame(captured_, {session.body_positions(), session.body_normals()}, layers, other);
 }
 
 std::vector<LegendEntry> legend_of(const Layers& layers) {
@@ -172,7 +192,8 @@ std::vector<LegendEntry> legend_of(const Layers& layers) {
   add(layers.boxes, "swept boxes of the proxies", k_blue);
   add(layers.sweeps, "proxies on their way in the frame", k_purple);
   for (const double percent : {10.0, 5.0, 0.0, -5.0, -10.0})
-    add(layers.strain, fmt::format("{:+g} % long", percent), strain_colour(0.01 * percent));
+    add(layers.strain, percent == 0.0 ? "as at rest" : fmt::format("{:+g} % long", percent),
+        strain_colour(0.01 * percent));
   add(layers.attachments, "pinned", k_orange);
   add(layers.attachments, "sewn", k_purple);
   add(layers.tiles, "tiles with a candidate", k_black);

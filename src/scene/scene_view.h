@@ -26,12 +26,14 @@ public:
   /// What layers.proxy_error shows; at first 10 mm and more.
   void set_error_scale(const ErrorScale& scale) { error_scale_ = scale; }
 
-  /// `skin`: of that frame; asked for with the layers body, proxy_error and penetration only. The spans are good until
-  /// the next call, and as long as `skin` is.
-  FrameView frame(const FrameState& state, const SkinView& skin, const Layers& layers);
+  /// With `other` cloth is in the colours of how far each particle is from where the other state has it, where both
+  /// have as many. `skin`: of that frame; asked for with the layers body, proxy_error and penetration only. The spans
+  /// are good until the next call, and as long as `skin` is.
+  FrameView frame(const FrameState& state, const SkinView& skin, const Layers& layers,
+                  const FrameState* other = nullptr);
 
   /// The session's present frame; with those layers its body must have been skinned.
-  FrameView frame(const Session& session, const Layers& layers);
+  FrameView frame(const Session& session, const Layers& layers, const FrameState* other = nullptr);
 
 private:
   /// A garment as it is drawn. What is woven in rows and columns is drawn finer than it is simulated, through every
@@ -44,6 +46,7 @@ private:
   };
 
   void add_sheet(std::size_t g, const FrameState& state, const Layers& layers, FrameView& view);
+  void colour_by_distance(const FrameState& state, const FrameState& other);
   void colour_by_depth(const FrameState& state, const SkinView& skin);
 
   const Scene* scene_;
@@ -58,6 +61,9 @@ private:
 
 /// Depths in the true body: from light orange at the tolerance to dark red.
 inline constexpr ErrorScale k_depth_scale = {0.0005, 0.01};
+
+/// Distances between two states: the same colours, from here to here.
+inline constexpr ErrorScale k_apart_scale = {0.001, 0.05};
 
 /// What the colours of these layers mean.
 std::vector<LegendEntry> legend_of(const Layers& layers);

@@ -87,33 +87,38 @@ void draw_figures(Player& player) {
     ImGui::PlotLines("##history", history.data(), static_cast<int>(history.size()), 0, caption, 0, 1.2f * most,
                      {ImGui::GetFontSize() * 11, ImGui::GetFontSize() * 3.5f});
   }
-  const std::optional<Figures> figures = player.figures();
-  if (!figures) return;
+  const std::vector<Figures> figures = player.figures();
+  if (figures.empty()) return;
   ImGui::Separator();
-  const auto row = [](const char* name, int value) {
+  const auto row = [&](const char* name, const char* format, const auto& value) {
     ImGui::TextUnformatted(name);
-    ImGui::SameLine(ImGui::GetFontSize() * 6);
-    ImGui::Text("%9d", value);
+    for (std::size_t k = 0; k < figures.size(); ++k) {
+      ImGui::SameLine(ImGui::GetFontSize() * (5.5f + 5.0f * static_cast<float>(k)));
+      ImGui::Text(format, value(figures[k]));
+    }
   };
-  row("frame", figures->frame);
-  row("particles", figures->particles);
-  row("touching", figures->contacts);
-  row("substeps", figures->substeps);
-  row("recoveries", figures->recoveries);
-  ImGui::TextUnformatted("deepest");
-  ImGui::SameLine(ImGui::GetFontSize() * 6);
-  ImGui::Text("%6.2f mm", 1000.0 * figures->deepest);
-  ImGui::TextDisabled("%016llx", static_cast<unsigned long long>(figures->state_hash));
+  row("frame", "%8d", [](const Figures& f) { return f.frame; });
+  if (figures.size() > 1) row("ms", "%8.2f", [](const Figures& f) { return f.ms; });
+  row("particles", "%8d", [](const Figures& f) { return f.particles; });
+  row("touching", "%8d", [](const Figures& f) { return f.contacts; });
+  row("substeps", "%8d", [](const Figures& f) { return f.substeps; });
+  row("recoveries", "%8d", [](const Figures& f) { return f.recoveries; });
+  row("deepest mm", "%8.2f", [](const Figures& f) { return 1000.0 * f.deepest; });
+  for (const Figures& f : figures) ImGui::TextDisabled("state %016llx", static_cast<unsigned long long>(f.state_hash));
   if (const std::string recorded = player.recorded(); !recorded.empty()) ImGui::TextDisabled("%s", recorded.c_str());
 }
 
-/// Below the figures on the right; `top`: px.
-void draw_why(const std::vector<std::string>& lines, float top) {
-  if (lines.empty()) return;
-  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - k_margin, top}, ImGuiCond_Always, {1, 0});
-  ImGui::Begin("why", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
-  for (const std::string& line : lines) ImGui::TextUnformatted(line.c_str());
-  ImGui::End();
+/// Along the right edge of each view's part of the window; the last one below the figures. px.
+void draw_why(const std::vector<std::vector<std::string>>& sides, float top, float below_figures) {
+  const float part = ImGui::GetIO().DisplaySize.x / static_cast<float>(std::max<std::size_t>(1, sides.size()));
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    if (sides[k].empty()) continue;
+    const float right = static_cast<float>(k + 1) * part - k_margin;
+    ImGui::SetNextWindowPos({right, k + 1 == sides.size() ? below_figures : top}, ImGuiCond_Always, {1, 0});
+    ImGui::Begin(k == 0 ? "why" : "why beside", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
+    for (const std::string& line : sides[k]) ImGui::TextUnformatted(line.c_str());
+    ImGui::End();
+  }
 }
 
 void draw_times(const SmoothTimes& times) {
@@ -229,6 +234,20 @@ void draw_help() {
   ImGui::End();
 }
 
+void draw_captions(std::span<const FrameView> views) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float part = screen.x / static_cast<float>(views.size());
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    if (views[k].caption.empty()) continue;
+    const ImVec2 size = ImGui::CalcTextSize(views[k].caption.c_str());
+    const float left = (static_cast<float>(k) + 0.5f) * part - 0.5f * size.x, top = ImGui::GetFrameHeight() + k_margin;
+    ImDrawList& draw = *ImGui::GetBackgroundDrawList();
+    draw.AddRectFilled({left - 8, top}, {left + size.x + 8, top + size.y + 8}, ImGui::GetColorU32(ImGuiCol_WindowBg),
+                       5);
+    draw.AddText({left, top + 4}, ImGui::GetColorU32(ImGuiCol_Text), views[k].caption.c_str());
+  }
+}
+
 } // namespace
 
 void SmoothTimes::add(const std::vector<StageTime>& stages, double draw_ms) {
@@ -281,9 +300,10 @@ void read_input(ViewerState& state) {
   for (const ImWchar character : io.InputQueueCharacters) apply_character(character, state);
 }
 
-void draw_panels(Player& player, const SmoothTimes& times, const FrameView& view, std::span<const std::string> recent,
-                 ViewerState& state) {
+void draw_panels(Player& player, const SmoothTimes& times, std::span<const FrameView> views,
+                 std::span<const std::string> recent, ViewerState& state) {
   if (!state.panels) return;
+  const FrameView& view = views.back(); // its legend says more where there are two
   draw_menus(recent, state);
   const float top = ImGui::GetFrameHeight() + k_margin, right = ImGui::GetIO().DisplaySize.x - k_margin;
   ImGui::SetNextWindowPos({k_margin, top});
@@ -301,9 +321,10 @@ void draw_panels(Player& player, const SmoothTimes& times, const FrameView& view
   const float below = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + k_margin;
   ImGui::End();
 
-  draw_why(player.why(), below);
+  draw_why(player.why(), top, below);
   draw_legend_panel(view.legend);
   draw_transport(player, state);
+  draw_captions(views);
   if (view.error_scale) draw_error_scale(*view.error_scale, top);
   const std::string message = player.message();
   draw_message(message.empty() ? state.note : message, !message.empty());

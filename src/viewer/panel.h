@@ -27,7 +27,7 @@ void read_input(ViewerState& state);
 
 /// All panels; with a scale also the bar of the error overlay. `recent`: files to offer. Between ImGui::NewFrame and
 /// Render.
-void draw_panels(Player& player, const SmoothTimes& times, const FrameView& view, std::span<const std::string> recent,
-                 ViewerState& state);
+void draw_panels(Player& player, const SmoothTimes& times, std::span<const FrameView> views,
+                 std::span<const std::string> recent, ViewerState& state);
 
 } // namespace tutu::app

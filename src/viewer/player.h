@@ -22,6 +22,7 @@ struct Figures {
   int frame = 0, particles = 0, contacts = 0;
   int substeps = 0;   ///< of the garment with the most
   int recoveries = 0; ///< since the start
+  double ms = 0;      ///< of the simulation
   double deepest = 0; ///< m that a particle is inside a proxy
   std::uint64_t state_hash = 0;
 };
@@ -43,7 +44,7 @@ public:
   virtual std::string recorded() const { return ""; } ///< what one can go back to, in words
   virtual std::vector<StageTime> stage_times() const = 0;
   virtual std::vector<float> history() const { return {}; } ///< ms a frame, of the last ones up to that shown
-  virtual std::optional<Figures> figures() { return std::nullopt; }
+  virtual std::vector<Figures> figures() { return {}; }     ///< of each view
   /// s; where the skin sticks out of the proxies the most. May take seconds the first time. None without proxies.
   virtual std::optional<double> worst_time() { return std::nullopt; }
   /// What there is to see, side by side. Spans stay good until the next call of any function.
@@ -54,8 +55,8 @@ public:
     Vec3f from, direction; ///< unit
     float spread = 0;
   };
-  virtual void pick(const Ray&) {}                      ///< the particle there, or none
-  virtual std::vector<std::string> why() { return {}; } ///< about what was picked, a line each
+  virtual void pick(const Ray&) {}                                   ///< the particle there, or none
+  virtual std::vector<std::vector<std::string>> why() { return {}; } ///< of each view: about what was picked, in lines
 };
 
 } // namespace tutu::app

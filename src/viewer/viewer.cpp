@@ -10,6 +10,7 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
+#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -89,6 +90,13 @@ std::pair<int, int> part_of(int width, std::size_t k, std::size_t count) {
   return {static_cast<int>(k) * each, each};
 }
 
+/// Letters, digits, dots and dashes only.
+std::string file_stem(std::string title) {
+  for (char& c : title)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_') c = '-';
+  return title;
+}
+
 void pick(Player& player, const ViewerState& state, GLFWwindow* window, std::size_t views) {
   int width = 0, height = 0; // of the window, in which the pointer is told
   glfwGetWindowSize(window, &width, &height);
@@ -110,7 +118,7 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
   glfwSetDropCallback(window.handle(), note_drop);
   const ImGuiSession imgui(window.handle());
   Renderer renderer;
-  WindowPictures pictures(options.pictures, player.title());
+  WindowPictures pictures(options.pictures, file_stem(player.title()));
 
   state.layers = options.layers;
   state.time_scale = static_cast<float>(options.time_scale);
@@ -149,7 +157,7 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
     read_input(state);
     if (state.click) pick(player, state, window.handle(), views.size());
     state.click.reset();
-    draw_panels(player, times, views.front(), options.recent, state);
+    draw_panels(player, times, views, options.recent, state);
     imgui.end_frame();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     for (std::size_t k = 0; k < views.size(); ++k) {

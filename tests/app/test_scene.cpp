@@ -130,16 +130,16 @@ TEST(ScenePlayer, GoesOnAndBackAndShowsTheSameFrames) {
     player.go(way);
     shown = std::clamp(shown + way, 0, 6);
     while (player.behind()) (void)player.views({.body = false});
-    EXPECT_EQ(player.figures()->frame, shown);
-    EXPECT_EQ(player.figures()->state_hash, hashes[shown]) << shown;
+    EXPECT_EQ(player.figures().front().frame, shown);
+    EXPECT_EQ(player.figures().front().state_hash, hashes[shown]) << shown;
     EXPECT_NEAR(player.time(), shown * session.frame_seconds(), 1e-12);
     EXPECT_EQ(player.at_end(), shown == 6);
   }
   player.rewind();
-  EXPECT_EQ(player.figures()->state_hash, hashes[0]);
+  EXPECT_EQ(player.figures().front().state_hash, hashes[0]);
   player.seek(2 * session.frame_seconds());
-  EXPECT_EQ(player.figures()->state_hash, hashes[2]);
-  EXPECT_TRUE(player.why().empty());
+  EXPECT_EQ(player.figures().front().state_hash, hashes[2]);
+  EXPECT_TRUE(player.why().front().empty());
   player.pick(0, 100);
   EXPECT_EQ(player.why_shown()->frame, 2);
   EXPECT_EQ(player.why_shown()->particle, 100);
