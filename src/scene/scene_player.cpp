@@ -1,5 +1,6 @@
 #include "src/scene/scene_player.h"
 
+#include "proxies/signed_distance.h"
 #include "src/scene/overlay_cloth.h"
 #include "src/scene/overlay_colours.h"
 
@@ -123,6 +124,7 @@ std::vector<FrameView> ScenePlayer::views(const Layers& layers) {
 }
 
 FrameView ScenePlayer::draw(const Layers& layers) {
+  drawn_ = layers;
   if (layers.body || layers.proxy_error || layers.penetration) skin();
   FrameView view = view_.frame(*shown_, {body_positions_, body_normals_}, layers, other_ ? &*other_ : nullptr);
   if (picked_) add_picked(view);
@@ -148,6 +150,7 @@ void ScenePlayer::pick(std::size_t garment, int particle) {
 
 void ScenePlayer::pick_as(const ScenePlayer& other) {
   picked_.reset();
+  picked_proxy_.reset();
   const auto& same = other.picked_;
   if (same && same->garment < scene_->garments.size() &&
       same->particle < scene_->garments[same->garment].particle_count())
@@ -161,7 +164,13 @@ void ScenePlayer::forget_first_wrong() {
 
 void ScenePlayer::pick(const Ray& ray) {
   picked_.reset();
+  picked_proxy_.reset();
   forget_first_wrong();
+  if (drawn_.cloth || drawn_.particles || drawn_.strain) pick_particle(ray);
+  if (!picked_ && drawn_.proxies) pick_proxy(ray);
+}
+
+void ScenePlayer::pick_particle(const Ray& ray) {
   float best = std::numeric_limits<float>::max();
   for (std::size_t g = 0; g < shown_->garments.size(); ++g) {
     const std::vector<Vec3>& positions = shown_->garments[g].positions;
@@ -176,6 +185,30 @@ void ScenePlayer::pick(const Ray& ray) {
   }
 }
 
+void ScenePlayer::pick_proxy(const Ray& ray) {
+  constexpr double k_farthest = 60.0, k_there = 1e-4; // m
+  constexpr int k_most_steps = 500;
+  double along = 0.0; // no surface is nearer than the distance: that far the ray is free
+  for (int step = 0; step < k_most_steps && along < k_farthest; ++step) {
+    const Vec3 point = ray.from.cast<double>() + along * ray.direction.cast<double>();
+    double nearest = k_farthest;
+    for (std::size_t c = 0; c < shown_->colliders_end.size(); ++c) {
+      const double distance = proxies::signed_distance(point, shown_->colliders_end[c]).distance;
+      if (distance < k_there) {
+        picked_proxy_ = static_cast<int>(c);
+        return;
+      }
+      nearest = std::min(nearest, distance);
+    }
+    along += nearest;
+  }
+}
+
+std::optional<WhyProxy> ScenePlayer::why_proxy() const {
+  if (!picked_proxy_) return std::nullopt;
+  return explain_proxy(*scene_, *picked_proxy_, *shown_);
+}
+
 std::optional<Why> ScenePlayer::why_shown() {
   if (!picked_) return std::nullopt;
   const auto before = simulation_.frame(shown_->index - 1);
@@ -188,6 +221,7 @@ std::optional<Why> ScenePlayer::why_shown() {
 }
 
 std::vector<std::vector<std::string>> ScenePlayer::why() {
+  if (const auto proxy = why_proxy()) return {text_of(*proxy)};
   const std::optional<Why> why = why_shown();
   return {why ? text_of(*why) : std::vector<std::string>{}};
 }

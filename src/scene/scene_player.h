@@ -51,10 +51,13 @@ public:
   Simulation::Extent extent() const { return simulation_.extent(); }
   /// Of the particle that is picked, at the frame that is shown, back to the start of what is recorded.
   std::optional<Why> why_shown();
+  std::optional<WhyProxy> why_proxy() const; ///< of the proxy that is picked
 
 private:
   void jump(); ///< to the target
   void forget_first_wrong();
+  void pick_particle(const Ray& ray);
+  void pick_proxy(const Ray& ray);
   void skin();
   void add_picked(FrameView& view);
 
@@ -72,6 +75,8 @@ private:
     int particle;
   };
   std::optional<Picked> picked_;
+  std::optional<int> picked_proxy_;
+  Layers drawn_;                          ///< only what is seen can be picked
   std::optional<FirstWrong> first_wrong_; ///< of it, among the frames up to
   int looked_at_ = -1;                    ///< this one
   std::vector<Touch> touches_;

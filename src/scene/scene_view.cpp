@@ -200,7 +200,7 @@ std::vector<LegendEntry> legend_of(const Layers& layers) {
   add(layers.tiles, "tiles without", k_grey);
   add(layers.tiles, "tile to its candidate", k_sky);
   add(layers.contacts, "touches: at the gap", k_green);
-  add(layers.contacts, "nearer: the arrow grows tenfold", k_orange);
+  add(layers.contacts, "nearer: longer by 10 x the depth", k_orange);
   add(layers.contacts, "inside the proxy", k_vermilion);
   for (const double mm : {0.0, 1.0, 4.0, 10.0})
     add(layers.penetration, fmt::format("{:g} mm in the body", mm), error_colour(k_depth_scale, 0.001 * mm));

@@ -174,6 +174,50 @@ std::vector<std::string> text_of(const Why& why) {
   return lines;
 }
 
+WhyProxy explain_proxy(const Scene& scene, int collider, const FrameState& now) {
+  WhyProxy why;
+  why.name = collider_names(scene)[collider];
+  why.frame = now.index;
+  const proxies::Capsule &start = now.colliders_start[collider], &end = now.colliders_end[collider];
+  why.speed = std::max((end.a - start.a).norm(), (end.b - start.b).norm()) * scene.description.frames_per_second;
+  std::vector<Touch> touches;
+  for (std::size_t g = 0; g < scene.garments.size(); ++g) {
+    const cloth::Garment& garment = scene.garments[g];
+    touches.clear();
+    find_touches(garment, now.garments[g].positions, now.swept(), touches);
+    for (const Touch& touch : touches) {
+      if (touch.collider != collider) continue;
+      ++why.touching;
+      const double depth = touch.depth(garment.fabric.contact_offset());
+      if (depth <= why.depth) continue;
+      why.depth = depth;
+      why.garment = garment.name;
+      why.particle = touch.particle;
+    }
+  }
+  return why;
+}
+
+nlohmann::json json_of(const WhyProxy& why) {
+  nlohmann::json json = {{"name", why.name},
+                         {"frame", why.frame},
+                         {"speed_m_s", why.speed},
+                         {"touching", why.touching},
+                         {"deepest", nullptr}};
+  if (why.particle >= 0)
+    json["deepest"] = {{"garment", why.garment}, {"particle", why.particle}, {"depth_mm", 1000.0 * why.depth}};
+  return json;
+}
+
+std::vector<std::string> text_of(const WhyProxy& why) {
+  std::vector<std::string> lines = {fmt::format("{} in frame {}, {:.2f} m/s", why.name, why.frame, why.speed),
+                                    fmt::format("{} particles touch it", why.touching)};
+  if (why.particle >= 0)
+    lines.push_back(
+        fmt::format("deepest: {} {}, {:.2f} mm into the gap", why.garment, why.particle, 1000.0 * why.depth));
+  return lines;
+}
+
 WhyAddress why_address(const Scene& scene, const std::string& text, int most) {
   const auto number = [&](std::string_view digits) {
     int value = -1;

@@ -60,6 +60,20 @@ nlohmann::json json_of(const Why& why); ///< lengths in mm where the name says s
 /// The same for a person, a line each.
 std::vector<std::string> text_of(const Why& why);
 
+/// What a proxy does to the garments in a frame.
+struct WhyProxy {
+  std::string name;
+  int frame = 0;
+  double speed = 0.0;  ///< m/s, of the end of its axis that goes farther in the frame
+  int touching = 0;    ///< particles of all garments (find_touches)
+  std::string garment; ///< of the particle that is deepest in the garment's gap; "" when none is
+  int particle = -1;   ///< that one
+  double depth = 0.0;  ///< m, > 0 where there is one
+};
+WhyProxy explain_proxy(const Scene& scene, int collider, const FrameState& now);
+nlohmann::json json_of(const WhyProxy& why);
+std::vector<std::string> text_of(const WhyProxy& why);
+
 /// "skirt:12@340": a particle of a garment in a frame.
 struct WhyAddress {
   std::size_t garment = 0;

@@ -23,7 +23,7 @@ constexpr ImGuiWindowFlags k_panel_flags = ImGuiWindowFlags_NoDecoration | ImGui
 constexpr std::array<std::array<const char*, 2>, 5> k_mouse = {{{"drag", "turn"},
                                                                 {"Shift or middle drag", "move aside"},
                                                                 {"wheel", "nearer, further"},
-                                                                {"click a particle", "why it is where it is"},
+                                                                {"click", "why that particle (or proxy) is so"},
                                                                 {"drop a file", "play that scene or character"}}};
 
 void draw_menus(std::span<const std::string> recent, ViewerState& state) {
@@ -108,13 +108,15 @@ void draw_figures(Player& player) {
   if (const std::string recorded = player.recorded(); !recorded.empty()) ImGui::TextDisabled("%s", recorded.c_str());
 }
 
-/// Along the right edge of each view's part of the window; the last one below the figures. px.
-void draw_why(const std::vector<std::vector<std::string>>& sides, float top, float below_figures) {
-  const float part = ImGui::GetIO().DisplaySize.x / static_cast<float>(std::max<std::size_t>(1, sides.size()));
+/// Along the right edge of each view's part of the window: the last one below the figures (px), others at the bottom.
+void draw_why(const std::vector<std::vector<std::string>>& sides, float below_figures) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  const float part = screen.x / static_cast<float>(std::max<std::size_t>(1, sides.size()));
   for (std::size_t k = 0; k < sides.size(); ++k) {
     if (sides[k].empty()) continue;
     const float right = static_cast<float>(k + 1) * part - k_margin;
-    ImGui::SetNextWindowPos({right, k + 1 == sides.size() ? below_figures : top}, ImGuiCond_Always, {1, 0});
+    if (k + 1 == sides.size()) ImGui::SetNextWindowPos({right, below_figures}, ImGuiCond_Always, {1, 0});
+    else ImGui::SetNextWindowPos({right, screen.y - k_margin - 3.2f * ImGui::GetFontSize()}, ImGuiCond_Always, {1, 1});
     ImGui::Begin(k == 0 ? "why" : "why beside", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
     for (const std::string& line : sides[k]) ImGui::TextUnformatted(line.c_str());
     ImGui::End();
@@ -321,7 +323,7 @@ void draw_panels(Player& player, const SmoothTimes& times, std::span<const Frame
   const float below = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + k_margin;
   ImGui::End();
 
-  draw_why(player.why(), top, below);
+  draw_why(player.why(), below);
   draw_legend_panel(view.legend);
   draw_transport(player, state);
   draw_captions(views);

@@ -2,6 +2,7 @@
 #include "proxies/signed_distance.h"
 #include "rig/error.h"
 #include "src/scene/overlay_contacts.h"
+#include "src/scene/scene_player.h"
 #include "src/scene/why.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
@@ -118,6 +119,38 @@ TEST_F(WhyAParticle, TheFirstFrameThatIsWrongIsFound) {
   ASSERT_TRUE(inside);
   EXPECT_EQ(inside->what, scene_.proxies[0].name);
   EXPECT_NEAR(inside->value, trunk.radius - 0.1, 1e-6);
+}
+
+TEST_F(WhyAParticle, AProxyThatIsClickedTellsWhoTouchesIt) {
+  ScenePlayer player(scene_, {scene_.garments[0].rest_positions}, 12);
+  player.go(12);
+  while (player.behind()) (void)player.views({});
+  const Player::Ray ray{{0, 0.5f, 3}, {0, 0, -1}, 1e-4f}; // at the middle of the capsule, below the sheet
+  player.pick(ray);
+  EXPECT_FALSE(player.why_proxy()); // it is not drawn
+  (void)player.views({.cloth = false, .proxies = true});
+  player.pick(ray);
+  const auto why = player.why_proxy();
+  ASSERT_TRUE(why);
+  EXPECT_EQ(why->name, scene_.proxies[0].name);
+  EXPECT_EQ(why->frame, 12);
+  EXPECT_NEAR(why->speed, 0.0, 1e-9); // it turns about its own axis
+  const double gap = scene_.garments[0].fabric.contact_offset();
+  const std::vector<std::uint8_t> pinned = cloth::pinned_flags(scene_.garments[0]);
+  int touching = 0;
+  double deepest = 0.0;
+  for (std::size_t i = 0; i < pinned.size(); ++i) {
+    if (pinned[i]) continue;
+    const double distance =
+        from_upright(player.shown().colliders_end[0], player.shown().garments[0].positions[i]).first;
+    touching += distance < gap + k_touch_slack;
+    deepest = std::max(deepest, gap - distance);
+  }
+  EXPECT_EQ(why->touching, touching);
+  EXPECT_GT(touching, 5);
+  EXPECT_NEAR(why->depth, deepest, 1e-12);
+  player.pick({{0, 0.5f, 3}, {0, 1, 0}, 1e-4f});
+  EXPECT_FALSE(player.why_proxy());
 }
 
 TEST_F(WhyAParticle, TheProgramSaysTheSame) {
