@@ -88,12 +88,14 @@ int play_in_window(const PlayOptions& options, Draped first, std::optional<Drape
     viewer.message = message;
     const int frames = frames_to_play(options, first.scene);
     ViewerEnd end;
+    std::string stopped;
     nlohmann::json json;
     if (other) {
       SplitPlayer player({&first.scene, first.start, first.scene.name()},
                          {&other->scene, other->start, split_caption(options)}, frames);
       for (ScenePlayer* side : {&player.left(), &player.right()}) set_up(*side, options, why, frames);
       end = run_viewer(player, viewer);
+      stopped = player.message();
       json = json_of(player.left(), end);
       json["against"] = json_of(player.right(), end);
       json["against"]["setting"] = split_caption(options);
@@ -101,10 +103,12 @@ int play_in_window(const PlayOptions& options, Draped first, std::optional<Drape
       ScenePlayer player(first.scene, first.start, frames);
       set_up(player, options, why, frames);
       end = run_viewer(player, viewer);
+      stopped = player.message();
       json = json_of(player, end);
     }
     if (!options.json.empty()) write_file(options.json, json.dump(2) + "\n");
-    if (!end.open) return k_ok;
+    if (!stopped.empty()) fmt::print(stderr, "tutu: {}\n", stopped);
+    if (!end.open) return stopped.empty() ? k_ok : k_not_met;
     viewer.layers = end.layers;
     why.clear();
     message.clear();

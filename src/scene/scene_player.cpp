@@ -10,7 +10,7 @@
 namespace tutu::app {
 namespace {
 
-constexpr int k_ahead = 8;     // frames that are simulated before they are asked for
+constexpr int k_ahead = 16;    // frames that are simulated before they are asked for: a slow picture owes so many
 constexpr int k_history = 240; // frames of the plot
 
 } // namespace

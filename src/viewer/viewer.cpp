@@ -71,6 +71,7 @@ void advance(Player& player, ViewerState& state, Pacing& pacing, double elapsed,
   state.seek.reset();
   state.steps = 0;
 
+  player.go(0);                            // what was simulated since the last picture
   if (!state.playing || player.behind()) { // what cannot be simulated in time is not owed either
     pacing.forget();
   } else if (player.at_end()) {
