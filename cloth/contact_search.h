@@ -41,6 +41,7 @@ public:
   Vec3 surface_motion(int collider, const Vec3& point) const;
 
   const ContactCounts& counts() const { return counts_; }
+  BroadPhaseView broad_phase() const { return {{}, candidates_.begin, candidates_.colliders}; }
 
 private:
   void find_candidates(proxies::CollisionQuery& query, const Particles& particles);

@@ -25,6 +25,7 @@ public:
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
   const ContactCounts& contact_counts() const override { return contacts_.counts(); }
+  BroadPhaseView broad_phase() const override { return contacts_.broad_phase(); }
 
 private:
   void integrate(const FrameInput& input, double h);

@@ -44,6 +44,7 @@ public:
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
   const ContactCounts& contact_counts() const override { return contacts_.counts(); }
+  BroadPhaseView broad_phase() const override { return contacts_.broad_phase(); }
 
 private:
   using Vector = Eigen::Matrix<Scalar, 3, 1>;

@@ -48,6 +48,12 @@ struct ContactCounts {
   std::int64_t contacts = 0;   ///< projections
 };
 
+/// What the last broad phase looked at and gave, in compressed rows like proxies::Candidates: for pictures.
+struct BroadPhaseView {
+  std::span<const proxies::Box> boxes;   ///< of tiles, grown by their reach, world; empty where each particle is asked
+  std::span<const int> begin, colliders; ///< of each box, or of each particle
+};
+
 /// Since the solver was made; all 0 without SolverOptions::self_collision.
 struct SelfCollisionCounts {
   std::int64_t substeps = 0;
@@ -84,6 +90,7 @@ public:
   virtual const Particles& particles() const = 0;
   virtual const SolverTimes& times() const = 0; ///< of the last frame
   virtual const ContactCounts& contact_counts() const = 0;
+  virtual BroadPhaseView broad_phase() const { return {}; } ///< good until the next step()
   virtual SelfCollisionCounts self_collision_counts() const { return {}; }
 };
 

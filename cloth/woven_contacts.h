@@ -35,6 +35,7 @@ public:
   bool finish(WovenFinish<T> kernel, const WovenSheetView<T>& view, const WovenStep<T>& step);
 
   const ContactCounts& counts() const { return counts_; }
+  BroadPhaseView broad_phase() const { return {boxes_, candidates_.begin, candidates_.colliders}; }
 
 private:
   struct Tile {

@@ -55,6 +55,7 @@ public:
   }
   const SolverTimes& times() const override { return times_; }
   const ContactCounts& contact_counts() const override { return asks_each_ ? search_.counts() : contacts_.counts(); }
+  BroadPhaseView broad_phase() const override { return asks_each_ ? search_.broad_phase() : contacts_.broad_phase(); }
   SelfCollisionCounts self_collision_counts() const override { return self_ ? self_->counts() : SelfCollisionCounts{}; }
 
 private:

@@ -1,47 +1,26 @@
 #include "rig/error.h"
 #include "rig/file_io.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/export/png.h"
-#include "src/export/video.h"
+#include "src/commands/play_options.h"
 #include "src/interrupt.h"
 #include "src/progress.h"
-#include "src/render/offscreen.h"
 #include "src/scene/posed_body.h"
-#include "src/scene/run_stats.h"
-#include "src/scene/scene_player.h"
+#include "src/scene/proxy_error.h"
+#include "src/scene/scene_override.h"
 #include "src/stability/warning.h"
-#include "src/viewer/viewer.h"
 #include "src/viewer/window.h"
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <fmt/format.h>
-#include <numbers>
 
 namespace tutu::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
-  SceneOptions scene;
-  bool headless = false, no_pictures = false, fixed_substeps = false;
-  std::optional<int> frames;
-  std::string out, json;
-  std::vector<int> at;
-  std::vector<std::string> show, hide;
-  std::optional<std::string> overlay;
-  double tolerance_mm = 1000.0 * ErrorScale().tolerance;
-  bool worst = false;
-  std::string size = "1280x720";
-  int supersample = 1;
-  double yaw_degrees = 25.0, pitch_degrees = 8.0;
-};
-
 /// Refuses what cannot be carried out together, before anything long begins.
-void check(const Options& options) {
+void check(const PlayOptions& options) {
   const fs::path out = options.out;
   const std::string suffix = out.extension().string();
   const std::vector<std::string> pictures = {".png", ".jpg", ".jpeg", ".gif", ".avi", ".mov", ".mkv", ".webm"};
@@ -49,6 +28,11 @@ void check(const Options& options) {
     throw InputError("", "--out", options.out, "a folder for the pictures");
   if (std::find(pictures.begin(), pictures.end(), suffix) != pictures.end())
     throw InputError("", "--out", options.out, "a film (.mp4) or a folder");
+  if (options.window && options.headless) throw InputError("", "--window", "it with --headless", "one of the two");
+  if (options.window && (!options.at.empty() || options.no_pictures))
+    throw InputError("", "--window", "it with --at or --no-pictures", "one of the two");
+  if (!options.against.empty() && !options.split.empty())
+    throw InputError("", "--against", "it with --split", "one of the two");
   if (options.worst && options.frames) throw InputError("", "--worst", "it with --frames", "one of the two");
   if (!options.at.empty() && options.no_pictures)
     throw InputError("", "--at", "it with --no-pictures", "one of the two");
@@ -58,137 +42,10 @@ void check(const Options& options) {
   if (!options.json.empty()) (void)PendingFile(options.json); // a place that cannot be written is told now
 }
 
-/// "1280x720" -> {1280, 720}.
-std::pair<int, int> size_of(const std::string& text) {
-  const auto side = [](std::string_view digits) {
-    int value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    return error == std::errc() && end == digits.data() + digits.size() && value >= 16 && value <= 8192 ? value : 0;
-  };
-  const std::size_t cross = text.find('x');
-  const std::string_view all = text;
-  const int width = cross == std::string::npos ? 0 : side(all.substr(0, cross));
-  const int height = cross == std::string::npos ? 0 : side(all.substr(cross + 1));
-  if (width == 0 || height == 0) throw InputError("", "--size", text, "WIDTHxHEIGHT, each from 16 to 8192");
-  return {width, height};
-}
-
-const std::vector<std::pair<std::string, bool Layers::*>> k_layers = {
-    {"body", &Layers::body},           {"cloth", &Layers::cloth},         {"ground", &Layers::ground},
-    {"wireframe", &Layers::wireframe}, {"particles", &Layers::particles}, {"skeleton", &Layers::skeleton},
-    {"proxies", &Layers::proxies},
-};
-
 std::vector<std::string> layer_names() {
   std::vector<std::string> names;
-  for (const auto& layer : k_layers) names.push_back(layer.first);
+  for (const LayerInfo& layer : k_layers) names.push_back(layer.name);
   return names;
-}
-
-Layers layers_of(const Options& options) {
-  Layers layers;
-  const auto set = [&](const std::vector<std::string>& names, bool on) {
-    for (const auto& [name, member] : k_layers)
-      if (std::find(names.begin(), names.end(), name) != names.end()) layers.*member = on;
-  };
-  set(options.show, true);
-  set(options.hide, false);
-  layers.proxy_error = options.overlay.has_value();
-  return layers;
-}
-
-/// Where the pictures of a run go: a film, numbered PNGs, chosen PNGs, or nowhere.
-class Pictures {
-public:
-  Pictures(const Options& options, const Scene& scene)
-      : at_(options.at), stem_(scene.name()), layers_(layers_of(options)) {
-    if (options.no_pictures) return;
-    const auto [width, height] = size_of(options.size);
-    offscreen_.emplace(OffscreenOptions{width, height, options.supersample});
-    const auto radians = [](double degrees) { return static_cast<float>(degrees * std::numbers::pi / 180.0); };
-    camera_ = frame_camera(motion_points(scene), radians(options.yaw_degrees), radians(options.pitch_degrees),
-                           offscreen_->aspect());
-    view_.emplace(scene);
-    view_->set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
-
-    out_ = options.out;
-    const bool film = at_.empty() && (out_.empty() ? ffmpeg_available() : out_.extension() == ".mp4");
-    if (out_.empty()) out_ = film ? stem_ + ".mp4" : at_.empty() ? stem_ + "-frames" : ".";
-    if (film) video_.emplace(out_, width, height, scene.description.frames_per_second);
-    else fs::create_directories(out_);
-    if (!film && at_.empty() && options.out.empty())
-      fmt::print(stderr, "note: no ffmpeg here, so the frames go to {}/\n", out_.string());
-  }
-
-  void add(Session& session) {
-    const bool wanted = offscreen_ && (at_.empty() || std::find(at_.begin(), at_.end(), session.frame()) != at_.end());
-    if (!wanted) return;
-    offscreen_->draw(view_->frame(session, layers_), camera_, image_);
-    if (video_) video_->add(image_);
-    else write_png(out_ / fmt::format("{}-{:04}.png", stem_, session.frame()), image_);
-    ++count_;
-  }
-
-  /// What was written, in words; "" for nothing.
-  std::string finish() {
-    if (count_ == 0) return "";
-    if (video_) video_->finish();
-    return video_ ? out_.string() : fmt::format("{} picture{} in {}/", count_, count_ == 1 ? "" : "s", out_.string());
-  }
-
-private:
-  std::vector<int> at_;
-  std::string stem_;
-  Layers layers_;
-  fs::path out_;
-  Camera camera_;
-  std::optional<Offscreen> offscreen_;
-  std::optional<SceneView> view_;
-  std::optional<VideoWriter> video_;
-  Image image_;
-  int count_ = 0;
-};
-
-/// Each recovery that was kept, with the constraint that was bad first.
-void tell_recoveries(const SessionTroubles& troubles) {
-  for (const SessionRecovery& recovery : troubles.first_recoveries)
-    fmt::print(stderr, "note: {}\n", recovery.message());
-  const int more = troubles.recoveries - static_cast<int>(troubles.first_recoveries.size());
-  if (more > 0) fmt::print(stderr, "note: and {} recoveries more\n", more);
-}
-
-int play_headless(const Options& options, const Scene& scene, const std::vector<std::vector<Vec3>>& start) {
-  Session session(scene);
-  session.start(start);
-  int frames = 0;
-  if (options.frames) frames = *options.frames;
-  else if (options.at.empty()) frames = frames_of(scene);
-  else frames = *std::max_element(options.at.begin(), options.at.end());
-
-  Pictures pictures(options, scene);
-  RunStats stats(scene);
-  session.skin_body();
-  if (!options.at.empty()) pictures.add(session); // frame 0 is the draped start; a film begins with the first motion
-  Progress bar(scene.name(), frames);
-  while (session.frame() < frames && !interrupted()) {
-    session.advance();
-    if (session.failure()) break;
-    session.skin_body();
-    stats.add(session);
-    pictures.add(session);
-    bar.tick(session.frame());
-  }
-  bar.finish();
-
-  const bool diverged = session.failure().has_value();
-  const std::string written = diverged ? "" : pictures.finish();
-  fmt::print("{}", stats.text(session));
-  if (!options.json.empty()) write_file(options.json, stats.json(session).dump(2) + "\n");
-  if (!written.empty()) fmt::print("wrote {}\n", written);
-  tell_recoveries(session.troubles());
-  if (diverged) fmt::print(stderr, "tutu: {}\n", session.failure()->message());
-  if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", session.frame(), frames);
-  return diverged || interrupted() ? k_not_met : k_ok;
 }
 
 /// The frame that --worst asks for, told; none when interrupted.
@@ -203,46 +60,123 @@ std::optional<int> find_worst(const Scene& scene) {
   return frame;
 }
 
-int run(const Options& options) {
-  const bool headless = options.headless || !options.json.empty() || !options.at.empty() || !display_available();
+int run(const PlayOptions& options) {
+  const bool wants_files = !options.json.empty() || !options.at.empty() || !options.why.empty();
+  const bool headless = !options.window && (options.headless || wants_files || !display_available());
   check(options);
   if (headless) catch_interrupt();
-  Scene scene = options.scene.load();
-  if (options.fixed_substeps) scene.description.adaptive_substeps = false;
-  if ((options.overlay || options.worst) && scene.proxies.empty())
-    throw InputError(scene.description.file.string(), "/proxies", "none", "proxies to show the error of");
-  if (const std::string warning = warning_of(scene); !warning.empty())
-    fmt::print(stderr, "warning: outside of what is safe (see tutu stability): {}\n", warning);
-  const auto start = draped_start(scene);
+  Draped first{load(options), {}};
+  auto start = draped_start(first.scene);
   if (!start) return k_not_met;
-  if (headless && options.worst) {
-    const std::optional<int> frame = find_worst(scene);
-    if (!frame) return k_not_met;
-    Options at_worst = options;
-    at_worst.at.push_back(*frame);
-    return play_headless(at_worst, scene, *start);
+  first.start = std::move(*start);
+  std::optional<Draped> other;
+  if (is_split(options)) {
+    other = other_scene(options, first);
+    if (!other) return k_not_met;
   }
-  if (headless) return play_headless(options, scene, *start);
-  ScenePlayer player(scene, *start);
-  player.set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
-  ViewerOptions viewer;
-  viewer.layers = layers_of(options);
-  viewer.start_at_worst = options.worst;
-  return run_viewer(player, viewer);
+  if (!headless) return play_in_window(options, std::move(first), std::move(other));
+  if (!options.worst) return play_headless(options, first, other ? &*other : nullptr);
+  const std::optional<int> frame = find_worst(first.scene);
+  if (!frame) return k_not_met;
+  PlayOptions at_worst = options;
+  at_worst.at.push_back(*frame);
+  return play_headless(at_worst, first, other ? &*other : nullptr);
 }
 
 } // namespace
 
+Layers layers_of(const PlayOptions& options) {
+  Layers layers;
+  const auto set = [&](const std::vector<std::string>& names, bool on) {
+    for (const LayerInfo& layer : k_layers)
+      if (std::find(names.begin(), names.end(), layer.name) != names.end()) layers.*layer.member = on;
+  };
+  set(options.show, true);
+  set(options.overlay, true);
+  set(options.hide, false);
+  return layers;
+}
+
+Scene load(const PlayOptions& options) {
+  Scene scene = options.scene.load();
+  if (options.fixed_substeps) scene.description.adaptive_substeps = false;
+  if ((layers_of(options).proxy_error || options.worst) && scene.proxies.empty())
+    throw InputError(scene.description.file.string(), "/proxies", "none", "proxies to show the error of");
+  if (const std::string warning = warning_of(scene); !warning.empty())
+    fmt::print(stderr, "warning: outside of what is safe (see tutu stability): {}\n", warning);
+  return scene;
+}
+
+std::pair<int, int> size_of(const std::string& text) {
+  const auto side = [](std::string_view digits) {
+    int value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    return error == std::errc() && end == digits.data() + digits.size() && value >= 16 && value <= 8192 ? value : 0;
+  };
+  const std::size_t cross = text.find('x');
+  const std::string_view all = text;
+  const int width = cross == std::string::npos ? 0 : side(all.substr(0, cross));
+  const int height = cross == std::string::npos ? 0 : side(all.substr(cross + 1));
+  if (width == 0 || height == 0) throw InputError("", "--size", text, "WIDTHxHEIGHT, each from 16 to 8192");
+  return {width, height};
+}
+
+bool is_split(const PlayOptions& options) { return !options.against.empty() || !options.split.empty(); }
+
+std::string split_caption(const PlayOptions& options) {
+  return options.against.empty() ? options.split : std::filesystem::path(options.against).stem().string();
+}
+
+std::optional<Draped> other_scene(const PlayOptions& options, const Draped& first) {
+  PlayOptions other = options;
+  Draped draped;
+  if (!options.against.empty()) {
+    other.scene.scene = options.against;
+    draped.scene = load(other);
+  } else {
+    SceneDescription description = first.scene.description;
+    override_setting(description, options.split, "--split");
+    draped.scene = load_scene(description);
+  }
+  const int frames = first.scene.description.frames_per_second, others = draped.scene.description.frames_per_second;
+  if (frames != others)
+    throw InputError(draped.scene.description.file.string(), "/solver/frames_per_second", std::to_string(others),
+                     std::to_string(frames) + ", as the first scene has");
+  if (!options.split.empty()) { // the same start, so that what differs is the setting's doing
+    draped.start = first.start;
+    return draped;
+  }
+  auto start = draped_start(draped.scene);
+  if (!start) return std::nullopt;
+  draped.start = std::move(*start);
+  return draped;
+}
+
+int frames_to_play(const PlayOptions& options, const Scene& scene) {
+  return options.frames ? *options.frames : frames_of(scene);
+}
+
 void add_play(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("play", "Play a scene in a window, or render it without one");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlayOptions>();
   options->scene.add_to(*command);
   command->add_flag("--headless", options->headless,
                     "No window: render to a film (.mp4), or PNGs where there is no ffmpeg");
+  command->add_flag("--window", options->window,
+                    "The window, whatever else is asked for; with --frames it closes after them, and --json tells what "
+                    "it showed at its end");
+  command->add_flag("--paused", options->paused, "The window opens without playing");
   command->add_option("--frames", options->frames, "Frames to play; once through the motion when left out")
       ->check(CLI::Range(1, k_most_frames));
   command->add_option("-o,--out", options->out, "Film (.mp4) or folder for PNGs");
   command->add_option("--json", options->json, "Write the figures of the run to this file (implies --headless)");
+  command->add_option("--why", options->why,
+                      "GARMENT:PARTICLE@FRAME: what that particle touches, what pulls on it, and when it first went "
+                      "wrong (implies --headless)");
+  command->add_option("--against", options->against, "A second scene beside the first, in step");
+  command->add_option("--split", options->split,
+                      "KEY=VALUE: the same scene beside itself with that setting (substeps=4, solver=mass_spring, "
+                      "proxies=FILE), in step, the cloth coloured by how far it is apart");
   command->add_option("--at", options->at, "Only pictures of these frames, as PNG (implies --headless)")
       ->delimiter(',')
       ->check(CLI::Range(0, k_most_frames));
@@ -254,8 +188,9 @@ void add_play(CLI::App& app, int& status) {
       ->check(CLI::IsMember(layer_names()));
   command
       ->add_option("--overlay", options->overlay,
-                   "proxy-error: the skin in the colours of its distance from the proxies")
-      ->check(CLI::IsMember({"proxy-error"}));
+                   "proxy-error: the skin in the colours of its distance from the proxies; penetration: the cloth in "
+                   "those of its depth in the true body")
+      ->check(CLI::IsMember({"proxy-error", "penetration"}));
   command->add_option("--tolerance-mm", options->tolerance_mm, "Of the overlay: what is nearer than this stays white")
       ->check(finite_number())
       ->check(CLI::Range(0.1, 1000.0))
@@ -263,7 +198,7 @@ void add_play(CLI::App& app, int& status) {
   command->add_flag(
       "--worst", options->worst,
       "Go to the frame in which the skin sticks out of the proxies the most (headless: only its picture)");
-  command->add_option("--size", options->size, "Pixels of the pictures")->capture_default_str();
+  command->add_option("--size", options->size, "Pixels of the pictures, and of the window")->capture_default_str();
   command->add_option("--supersample", options->supersample, "Draw this many times finer and average")
       ->check(CLI::Range(1, 4))
       ->capture_default_str();

@@ -62,6 +62,13 @@ std::optional<Eigen::Vector2f> project(const Camera& camera, int width, int heig
   return Eigen::Vector2f(0.5f * w + scale * seen.x(), 0.5f * h - scale * seen.y());
 }
 
+Vec3f ray_through(const Camera& camera, int width, int height, const Eigen::Vector2f& pixel) {
+  const float w = static_cast<float>(width), h = static_cast<float>(height);
+  const float scale = 2.0f * std::tan(0.5f * camera.vertical_fov) / h;
+  const Vec3f seen(scale * (pixel.x() - 0.5f * w), scale * (0.5f * h - pixel.y()), -1.0f);
+  return (axes(camera).transpose() * seen).normalized();
+}
+
 Vec3f eye_direction(float yaw, float pitch) {
   return {std::cos(pitch) * std::sin(yaw), std::sin(pitch), std::cos(pitch) * std::cos(yaw)};
 }

@@ -25,6 +25,9 @@ Mat4f orthographic(const Vec3f& lo, const Vec3f& hi);
 /// Nothing for a point behind the eye.
 std::optional<Eigen::Vector2f> project(const Camera& camera, int width, int height, const Vec3f& point);
 
+/// The other way: the unit direction from the eye through that pixel.
+Vec3f ray_through(const Camera& camera, int width, int height, const Eigen::Vector2f& pixel);
+
 /// Looks from `yaw` (rad about +Y; 0 = from +Z, pi/2 = from +X) and `pitch` (rad, positive = from above), as near as
 /// it can be with all points, and a margin, inside the picture, and them in its middle. At least one point.
 Camera frame_camera(std::span<const Vec3f> points, float yaw, float pitch, float aspect);

@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace tutu::app {
@@ -34,6 +35,26 @@ struct CapsuleView {
 struct LineView {
   Vec3f a, b;
   Colour colour = {1, 1, 1};
+  std::array<float, 2> width = {1, 1}; ///< at a and b, times the usual
+};
+
+/// Two lines, shaft and head, from `from` to `from + way`.
+inline void add_arrow(const Vec3f& from, const Vec3f& way, const Colour& colour, std::vector<LineView>& lines) {
+  constexpr float k_shaft = 0.65f, k_head = 4.0f; // share of the length; width of the head where it begins
+  const Vec3f neck = from + k_shaft * way;
+  lines.push_back({from, neck, colour});
+  lines.push_back({neck, from + way, colour, {k_head, 0.0f}});
+}
+
+struct PointView {
+  Vec3f position;
+  Colour colour = {1, 1, 1};
+};
+
+/// A colour and what it means.
+struct LegendEntry {
+  std::string text;
+  Colour colour;
 };
 
 /// What the colours of an error overlay mean (error_colours.h), m; 0 < tolerance < full.
@@ -49,10 +70,14 @@ struct FrameView {
   std::vector<SurfaceView> surfaces;
   std::vector<CapsuleView> capsules; ///< drawn translucent over the surfaces
   std::vector<LineView> lines;       ///< drawn over everything
+  std::vector<LineView> threads;     ///< drawn on the surfaces, and hidden by what lies before them
   std::vector<Vec3f> points;         ///< particles
+  std::vector<PointView> marks;      ///< drawn over everything
   bool ground = true;                ///< a floor at `ground_height` with the shadow of all surfaces
   float ground_height = 0.0f;
   std::optional<ErrorScale> error_scale; ///< surfaces' colours are errors: a picture gets a labelled bar
+  std::vector<LegendEntry> legend;       ///< of lines, points and colours: written into pictures
+  std::string caption;                   ///< below the picture, "" for none
 };
 
 /// Looks from `eye` at `target`, +Y up.

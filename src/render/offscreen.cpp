@@ -2,6 +2,7 @@
 
 #include "src/render/error_colours.h"
 #include "src/render/gl_objects.h"
+#include "src/render/legend.h"
 
 #include <algorithm>
 #include <array>
@@ -87,6 +88,8 @@ void Offscreen::draw(const FrameView& view, const Camera& camera, Image& image) 
   image.height = options_.height;
   reduce(raw_, options_.supersample, image);
   if (view.error_scale) draw_error_bar(*view.error_scale, image);
+  draw_legend(view.legend, image);
+  draw_caption(view.caption, image);
 }
 
 void reduce(const std::vector<std::uint8_t>& raw, int factor, Image& image) {

@@ -11,6 +11,7 @@ namespace {
 
 constexpr float k_line_half_width = 0.9f; // pixels of the finished picture
 constexpr float k_least_point = 3.0f;     // pixels across
+constexpr float k_thread_nearer = 2e-4f;  // of clip space: 2 cm at the target, before the sheet whose middle it is
 constexpr Colour k_point_colour = {0.10f, 0.16f, 0.30f};
 
 void blend(bool on) {
@@ -43,8 +44,10 @@ Overlay::Overlay()
   float_attribute(0, lines_.name(), 3, sizeof(LineView), offsetof(LineView, a), 1);
   float_attribute(1, lines_.name(), 3, sizeof(LineView), offsetof(LineView, b), 1);
   float_attribute(2, lines_.name(), 3, sizeof(LineView), offsetof(LineView, colour), 1);
+  float_attribute(3, lines_.name(), 2, sizeof(LineView), offsetof(LineView, width), 1);
   glBindVertexArray(point_array_.name());
-  float_attribute(0, points_.name(), 3, sizeof(Vec3f), 0);
+  float_attribute(0, points_.name(), 3, sizeof(PointView), 0);
+  float_attribute(1, points_.name(), 3, sizeof(PointView), offsetof(PointView, colour));
 }
 
 void Overlay::draw_capsules(std::span<const CapsuleView> capsules, const PictureFit& fit) {
@@ -91,31 +94,56 @@ void Overlay::draw_capsules(std::span<const CapsuleView> capsules, const Picture
   glDepthMask(GL_TRUE);
 }
 
-void Overlay::draw_lines(std::span<const LineView> lines, const PictureFit& fit) {
+void Overlay::draw_line_list(std::span<const LineView> lines, float nearer, const PictureFit& fit) {
   if (lines.empty()) return;
   lines_.upload(GL_ARRAY_BUFFER, lines.data(), lines.size_bytes());
   use_for_picture(line_program_, fit);
   line_program_.set("half_width", k_line_half_width * fit.pixel_scale);
+  line_program_.set("nearer", nearer);
   glBindVertexArray(line_array_.name());
-  glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
+  glDepthMask(GL_FALSE);
   blend(true);
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(lines.size()));
   blend(false);
+  glDepthMask(GL_TRUE);
+}
+
+void Overlay::draw_lines(std::span<const LineView> lines, const PictureFit& fit) {
+  glDisable(GL_DEPTH_TEST);
+  draw_line_list(lines, 0.0f, fit);
   glEnable(GL_DEPTH_TEST);
 }
 
+void Overlay::draw_threads(std::span<const LineView> threads, const PictureFit& fit) {
+  glDepthFunc(GL_LEQUAL);
+  draw_line_list(threads, k_thread_nearer, fit);
+}
+
 void Overlay::draw_points(std::span<const Vec3f> points, float radius, float pixels_per_metre, const PictureFit& fit) {
+  coloured_.clear();
+  for (const Vec3f& point : points) coloured_.push_back({point, k_point_colour});
+  glDepthFunc(GL_LEQUAL);
+  draw_point_list(coloured_, radius, pixels_per_metre, fit);
+}
+
+void Overlay::draw_marks(std::span<const PointView> marks, float radius, float pixels_per_metre,
+                         const PictureFit& fit) {
+  glDisable(GL_DEPTH_TEST);
+  draw_point_list(marks, radius, pixels_per_metre, fit);
+  glEnable(GL_DEPTH_TEST);
+}
+
+void Overlay::draw_point_list(std::span<const PointView> points, float radius, float pixels_per_metre,
+                              const PictureFit& fit) {
   if (points.empty()) return;
   points_.upload(GL_ARRAY_BUFFER, points.data(), points.size_bytes());
   use_for_picture(point_program_, fit);
   point_program_.set("radius", radius);
   point_program_.set("pixels_per_unit", pixels_per_metre);
   point_program_.set("least", k_least_point * fit.pixel_scale);
-  point_program_.set("colour", k_point_colour);
   glBindVertexArray(point_array_.name());
   glEnable(GL_PROGRAM_POINT_SIZE);
-  glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_FALSE);
   blend(true);
   glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(points.size()));

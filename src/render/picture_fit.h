@@ -9,6 +9,7 @@ struct PictureFit {
   Mat4f clip_from_world = Mat4f::Identity();
   Vec3f eye = Vec3f::Zero();
   Eigen::Vector2f picture = {1, 1}; ///< pixels
+  Eigen::Vector2f corner = {0, 0};  ///< of the picture in the framebuffer, pixels
   float pixel_scale = 1;            ///< pixels of this picture to one of the finished picture
 };
 
@@ -18,6 +19,7 @@ inline void use_for_picture(const Program& program, const PictureFit& fit) {
   program.set("clip_from_world", fit.clip_from_world);
   program.set("eye", fit.eye);
   program.set("picture", fit.picture);
+  program.set("picture_corner", fit.corner);
   program.set("pixel_scale", fit.pixel_scale);
 }
 

@@ -12,6 +12,7 @@ namespace tutu::app {
 namespace {
 
 constexpr float k_particle_radius = 0.0035f; // m
+constexpr float k_mark_radius = 0.0055f;     // m
 constexpr float k_floor_radius = 30.0f;      // m; its edge is long since one with the backdrop
 constexpr float k_view_reach = 60.0f;        // m beyond the target
 constexpr float k_widest_scene = 25.0f;      // m from the target: what flew further casts no shadow
@@ -54,7 +55,7 @@ struct Renderer::Parts {
 Renderer::Renderer() : parts_(std::make_unique<Parts>()) {}
 Renderer::~Renderer() = default;
 
-void Renderer::draw(const FrameView& view, const Camera& camera, int width, int height, float pixel_scale) {
+void Renderer::draw(const FrameView& view, const Camera& camera, int width, int height, float pixel_scale, int left) {
   Parts& parts = *parts_;
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
@@ -74,7 +75,7 @@ void Renderer::draw(const FrameView& view, const Camera& camera, int width, int 
   parts.shadows.draw(surfaces, light, view.ground);
 
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
-  glViewport(0, 0, width, height);
+  glViewport(left, 0, width, height);
   glEnable(GL_DEPTH_TEST);
   glDepthMask(GL_TRUE);
   glDepthFunc(GL_LESS);
@@ -85,6 +86,7 @@ void Renderer::draw(const FrameView& view, const Camera& camera, int width, int 
                                           view_from_world(camera),
                        .eye = camera.eye,
                        .picture = {w, h},
+                       .corner = {static_cast<float>(left), 0.0f},
                        .pixel_scale = pixel_scale};
   // Front to back, so that each pixel is shaded once.
   parts.draw_surfaces(surfaces, view, camera, light, fit);
@@ -92,9 +94,11 @@ void Renderer::draw(const FrameView& view, const Camera& camera, int width, int 
   parts.draw_backdrop(fit);
   parts.draw_wires(surfaces, fit);
   const float pixels_per_metre = 0.5f * h / std::tan(0.5f * camera.vertical_fov);
+  parts.overlay.draw_threads(view.threads, fit);
   parts.overlay.draw_points(view.points, k_particle_radius, pixels_per_metre, fit);
   parts.overlay.draw_capsules(view.capsules, fit);
   parts.overlay.draw_lines(view.lines, fit);
+  parts.overlay.draw_marks(view.marks, k_mark_radius, pixels_per_metre, fit);
   glBindVertexArray(0);
 }
 

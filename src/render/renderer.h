@@ -19,8 +19,9 @@ public:
 
   /// Fills the bound framebuffer (8 bits a channel, not sRGB-encoding; depth and stencil), `width` x `height` pixels.
   /// `pixel_scale`: how many of these pixels make one of the finished picture in each direction, for lines and points.
+  /// `left`: pixels of the framebuffer beside it, which are left alone but for their depth and stencil.
   /// Throws std::invalid_argument when a surface's spans do not fit each other; positions may hold anything.
-  void draw(const FrameView& view, const Camera& camera, int width, int height, float pixel_scale = 1.0f);
+  void draw(const FrameView& view, const Camera& camera, int width, int height, float pixel_scale = 1.0f, int left = 0);
 
 private:
   struct Parts;

@@ -6,6 +6,7 @@ const char* const k_preamble = R"glsl(#version 330 core
 uniform mat4 clip_from_world;
 uniform vec3 eye;
 uniform vec2 picture; // pixels
+uniform vec2 picture_corner; // of the picture in the framebuffer, pixels
 uniform float pixel_scale; // of these make one of the finished picture, in each direction
 )glsl";
 
@@ -31,7 +32,7 @@ vec3 encode(vec3 c) {
 // The studio's paper: bright behind the subject, a little darker towards the corners. It fills most of a picture, so it
 // is painted in sRGB straight away, and so is the floor: neither needs light added up.
 vec3 backdrop() {
-  vec2 p = (gl_FragCoord.xy - vec2(0.5, 0.54) * picture) / picture.y;
+  vec2 p = (gl_FragCoord.xy - picture_corner - vec2(0.5, 0.54) * picture) / picture.y;
   float r = min(dot(p, p) * 0.95, 1.0);
   return mix(vec3(0.906, 0.910, 0.918), vec3(0.722, 0.740, 0.775), r * (2.0 - r));
 }
@@ -273,9 +274,11 @@ const char* const k_line_vertex = R"glsl(
 layout(location = 0) in vec3 a;
 layout(location = 1) in vec3 b;
 layout(location = 2) in vec3 colour;
+layout(location = 3) in vec2 widths; // at a and b, times half_width
 uniform float half_width; // pixels, without the soft edge
+uniform float nearer;     // of the depth: before the sheet whose middle it is
 out vec3 v_colour;
-out float v_across; // pixels from the middle
+noperspective out vec2 v_across; // pixels: from the middle, half the width
 void main() {
   vec4 from = clip_from_world * vec4(a, 1.0), to = clip_from_world * vec4(b, 1.0);
   // Cut at the near plane, where the division below loses its meaning.
@@ -285,33 +288,35 @@ void main() {
   vec2 along = (to.xy / to.w - from.xy / from.w) * picture;
   float len = length(along);
   along = len > 1e-6 ? along / len : vec2(1.0, 0.0);
-  float reach = half_width + 1.0;
-  float side = (gl_VertexID & 1) == 0 ? -reach : reach;
+  float wide = half_width * (gl_VertexID < 2 ? widths.x : widths.y);
+  float side = (gl_VertexID & 1) == 0 ? -wide - 1.0 : wide + 1.0;
   vec4 end = gl_VertexID < 2 ? from : to;
-  float outwards = gl_VertexID < 2 ? -half_width : half_width;
+  float outwards = min(wide, half_width) * (gl_VertexID < 2 ? -1.0 : 1.0);
   vec2 shift = vec2(-along.y, along.x) * side + along * outwards;
-  v_across = side;
+  v_across = vec2(side, wide);
   v_colour = colour;
   gl_Position = max(from_near, to_near) <= 0.0 ? vec4(2.0, 2.0, 2.0, 1.0)
-                                               : vec4(end.xy + 2.0 * shift / picture * end.w, end.zw);
+                                               : vec4(end.xy + 2.0 * shift / picture * end.w, end.z - nearer * end.w, end.w);
 }
 )glsl";
 
 const char* const k_line_fragment = R"glsl(
 in vec3 v_colour;
-in float v_across;
-uniform float half_width;
+noperspective in vec2 v_across;
 out vec4 result;
-void main() { result = vec4(encode(v_colour), clamp(half_width + 0.5 - abs(v_across), 0.0, 1.0)); }
+void main() { result = vec4(encode(v_colour), clamp(v_across.y + 0.5 - abs(v_across.x), 0.0, 1.0)); }
 )glsl";
 
 const char* const k_point_vertex = R"glsl(
 layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 colour;
 uniform float radius;          // m
 uniform float pixels_per_unit; // at distance 1
 uniform float least;           // pixels across
 out float v_size;
+out vec3 v_colour;
 void main() {
+  v_colour = colour;
   gl_Position = clip_from_world * vec4(position, 1.0);
   gl_Position.z -= 2e-4 * gl_Position.w; // before the sheet whose middle it is
   v_size = max(2.0 * radius * pixels_per_unit / max(gl_Position.w, 1e-3), least);
@@ -321,12 +326,12 @@ void main() {
 
 const char* const k_point_fragment = R"glsl(
 in float v_size;
-uniform vec3 colour;
+in vec3 v_colour;
 out vec4 result;
 void main() {
   float r = length(gl_PointCoord - 0.5) * (v_size + 1.0);
   float shade = mix(1.25, 0.7, clamp(length(gl_PointCoord - vec2(0.38, 0.34)) * 1.6, 0.0, 1.0));
-  result = vec4(encode(colour * shade), clamp(0.5 * v_size + 0.5 - r, 0.0, 1.0));
+  result = vec4(encode(v_colour * shade), clamp(0.5 * v_size + 0.5 - r, 0.0, 1.0));
 }
 )glsl";
 

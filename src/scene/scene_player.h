@@ -2,35 +2,85 @@
 #pragma once
 
 #include "src/scene/scene_view.h"
+#include "src/scene/simulation.h"
+#include "src/scene/why.h"
 #include "src/viewer/player.h"
 
 namespace tutu::app {
 
+/// Memory of recorded frames: 4000 of the dance's, more than a minute.
+inline constexpr std::size_t k_recording_bytes = std::size_t{256} << 20;
+
+/// Simulates on a thread of its own, some frames ahead of what is shown.
 class ScenePlayer : public Player {
 public:
-  /// `start`: the garments' draped positions. The scene must outlive it.
-  ScenePlayer(const Scene& scene, std::vector<std::vector<Vec3>> start);
+  /// `start`: the garments' draped positions; `frames`: of the motion that are played. The scene must outlive it.
+  ScenePlayer(const Scene& scene, std::vector<std::vector<Vec3>> start, int frames);
 
   void set_error_scale(const ErrorScale& scale) { view_.set_error_scale(scale); }
 
-  void restart() override;
-  bool step() override;
+  void rewind() override;
+  void go(int frames) override;
   void seek(double time) override;
-  double frame_seconds() const override { return session_.frame_seconds(); }
-  double time() const override { return session_.time(); }
-  double duration() const override { return scene_->clip.duration(); }
+  bool behind() const override { return shown_->index != target_; }
+  bool at_end() const override;
+  double frame_seconds() const override { return 1.0 / scene_->description.frames_per_second; }
+  double time() const override { return shown_->time; }
+  double duration() const override { return frames_ * frame_seconds(); }
   std::string title() const override { return scene_->name(); }
-  std::string message() const override { return session_.failure() ? session_.failure()->message() : ""; }
+  std::string message() const override { return simulation_.message(); }
+  std::string recorded() const override;
   std::vector<StageTime> stage_times() const override;
+  std::vector<float> history() const override;
+  std::vector<Figures> figures() override;
   std::optional<double> worst_time() override;
-  FrameView view(const Layers& layers) override;
+  std::vector<FrameView> views(const Layers& layers) override;
+  void pick(const Ray& ray) override;
+  void pick(std::size_t garment, int particle);
+  std::vector<std::vector<std::string>> why() override;
+
+  const Scene& scene() const { return *scene_; }
+  const FrameState& shown() const { return *shown_; }
+  void update();                        ///< shows what was asked for, as far as it is there
+  void show(int index);                 ///< this frame for now, where it is recorded
+  FrameView draw(const Layers& layers); ///< what is shown
+  /// From now on paints how far cloth is from that of another state (k_apart_scale); copied.
+  void compare_with(const FrameState& other) { other_ = other; }
+  void pick_as(const ScenePlayer& other); ///< the same particle, where there is one
+
+  Simulation::Extent extent() const { return simulation_.extent(); }
+  /// Of the particle that is picked, at the frame that is shown, back to the start of what is recorded.
+  std::optional<Why> why_shown();
+  std::optional<WhyProxy> why_proxy() const; ///< of the proxy that is picked
 
 private:
+  void jump(); ///< to the target
+  void forget_first_wrong();
+  void pick_particle(const Ray& ray);
+  void pick_proxy(const Ray& ray);
+  void skin();
+  void add_picked(FrameView& view);
+
   const Scene* scene_;
-  std::vector<std::vector<Vec3>> start_;
-  Session session_;
+  int frames_;
+  Simulation simulation_;
+  int target_ = 0; ///< the frame that is asked for; shown as soon as it is there
+  Recording::Frame shown_;
   SceneView view_;
-  bool skinned_ = false; ///< the body is skinned at the session's present pose
+  std::vector<rig::SkinMatrix> palette_;
+  std::vector<Vec3f> body_positions_, body_normals_;
+  int skinned_ = -1; ///< frame that the body is skinned for
+  struct Picked {
+    std::size_t garment;
+    int particle;
+  };
+  std::optional<Picked> picked_;
+  std::optional<int> picked_proxy_;
+  Layers drawn_;                          ///< only what is seen can be picked
+  std::optional<FirstWrong> first_wrong_; ///< of it, among the frames up to
+  int looked_at_ = -1;                    ///< this one
+  std::vector<Touch> touches_;
+  std::optional<FrameState> other_;
   std::optional<double> worst_time_;
 };
 

@@ -1,45 +1,27 @@
 #include "src/scene/scene_view.h"
 
+#include "src/render/error_colours.h"
+#include "src/scene/overlay_body.h"
+#include "src/scene/overlay_cloth.h"
+#include "src/scene/overlay_colours.h"
+
+#include <fmt/format.h>
+
 namespace tutu::app {
 namespace {
 
-// Colour-blind safe (Okabe and Ito 2008), in linear RGB.
-constexpr Colour k_orange = {0.791f, 0.347f, 0.0f};
-constexpr Colour k_sky = {0.093f, 0.457f, 0.815f};
-constexpr Colour k_vermilion = {0.665f, 0.112f, 0.0f};
-
 /// `colours`: one a vertex in the place of the parts' own, or none.
-void add_body(const Session& session, FrameView& view, bool wireframe, std::span<const Colour> colours) {
-  const rig::Mesh& mesh = session.scene().character.mesh;
+void add_body(const rig::Mesh& mesh, const SkinView& skin, FrameView& view, bool wireframe,
+              std::span<const Colour> colours) {
   for (const rig::MeshPart& part : mesh.parts) {
     SurfaceView surface;
-    surface.positions = session.body_positions();
-    surface.normals = session.body_normals();
+    surface.positions = skin.positions;
+    surface.normals = skin.normals;
     surface.triangles = std::span(mesh.triangles).subspan(part.first_triangle, part.triangle_count);
     surface.colour = part.colour;
     surface.colours = colours;
     surface.wireframe = wireframe;
     view.surfaces.push_back(surface);
-  }
-}
-
-void add_skeleton(const Session& session, FrameView& view) {
-  const rig::Skeleton& skeleton = session.scene().character.skeleton;
-  const auto joints = session.world_from_joint();
-  for (int j = 0; j < skeleton.joint_count(); ++j)
-    if (const int parent = skeleton.parents[j]; parent != rig::k_no_parent)
-      view.lines.push_back(
-          {joints[parent].translation.cast<float>(), joints[j].translation.cast<float>(), k_vermilion});
-}
-
-void add_proxies(const Session& session, FrameView& view) {
-  const proxies::ColliderSet& colliders = session.colliders();
-  const auto posed = colliders.swept().end;
-  for (std::size_t c = 0; c < posed.size(); ++c) {
-    const bool sphere = colliders.proxies()[c].kind == proxies::ProxyKind::sphere;
-    view.capsules.push_back({posed[c].a.cast<float>(), posed[c].b.cast<float>(),
-                             static_cast<float>(posed[c].radius_at(0.0)), static_cast<float>(posed[c].radius_at(1.0)),
-                             sphere ? k_sky : k_orange});
   }
 }
 
@@ -59,57 +41,170 @@ void area_weighted_normals(const std::vector<Vec3f>& positions, std::span<const 
 
 } // namespace
 
-SceneView::SceneView(const Scene& scene) {
+SceneView::SceneView(const Scene& scene) : scene_(&scene) {
   constexpr int k_refinement = 3; // cells a cell each way: a skirt of 30 x 30 looks woven, not folded from paper
   for (const cloth::Garment& garment : scene.garments) {
     Sheet& sheet = cloth_.emplace_back();
-    if (garment.rows > 0) // flipped: a garment's rows run down, its front is outside
-      sheet.grid.emplace(GridShape{garment.rows, garment.columns, garment.woven_shut}, k_refinement, true);
+    if (garment.rows == 0) continue; // flipped: a garment's rows run down, its front is outside
+    const GridShape shape{garment.rows, garment.columns, garment.woven_shut};
+    sheet.grid.emplace(shape, k_refinement, true);
+    sheet.colour_grid.emplace(shape, k_refinement, true);
   }
 }
 
-FrameView SceneView::frame(const Session& session, const Layers& layers) {
+void SceneView::colour_by_depth(const FrameState& state, const SkinView& skin) {
+  const rig::Mesh& mesh = scene_->character.mesh;
+  if (!body_ && sideless_.empty()) {
+    try {
+      body_.emplace(mesh.positions, mesh.triangles);
+    } catch (const std::invalid_argument& unusable) {
+      sideless_ = unusable.what();
+    }
+  }
+  for (Sheet& sheet : cloth_) sheet.values.clear();
+  if (!body_) return;
+  body_->pose(skin.positions);
+  for (std::size_t g = 0; g < cloth_.size(); ++g) {
+    for (const Vec3& p : state.garments[g].positions) {
+      const Colour colour = error_colour(k_depth_scale, std::max(0.0, -body_->signed_distance(p).distance));
+      cloth_[g].values.emplace_back(colour[0], colour[1], colour[2]);
+    }
+  }
+}
+
+void SceneView::colour_by_distance(const FrameState& state, const FrameState& other) {
+  for (std::size_t g = 0; g < cloth_.size(); ++g) {
+    cloth_[g].values.clear();
+    const std::vector<Vec3>& positions = state.garments[g].positions;
+    if (g >= other.garments.size() || other.garments[g].positions.size() != positions.size()) continue;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const Colour c = error_colour(k_apart_scale, (positions[i] - other.garments[g].positions[i]).norm());
+      cloth_[g].values.emplace_back(c[0], c[1], c[2]);
+    }
+  }
+}
+
+void SceneView::add_sheet(std::size_t g, const FrameState& state, const Layers& layers, FrameView& view) {
+  const cloth::Garment& garment = scene_->garments[g];
+  Sheet& sheet = cloth_[g];
+  sheet.particles.clear();
+  for (const Vec3& p : state.garments[g].positions) sheet.particles.push_back(p.cast<float>());
+  SurfaceView surface;
+  if (sheet.grid) {
+    sheet.grid->update(sheet.particles);
+    surface.positions = sheet.grid->positions();
+    surface.normals = sheet.grid->normals();
+    surface.triangles = sheet.grid->triangles();
+  } else {
+    area_weighted_normals(sheet.particles, garment.triangles, sheet.normals);
+    surface.positions = sheet.particles;
+    surface.normals = sheet.normals;
+    surface.triangles = garment.triangles;
+  }
+  if (!sheet.values.empty()) {
+    std::span<const Vec3f> values = sheet.values;
+    if (sheet.colour_grid) { // colours go between particles as places do
+      sheet.colour_grid->update(values);
+      values = sheet.colour_grid->positions();
+    }
+    sheet.colours.clear();
+    for (const Vec3f& v : values) {
+      const Vec3f c = v.cwiseMax(0.0f).cwiseMin(1.0f);
+      sheet.colours.push_back({c.x(), c.y(), c.z()});
+    }
+    surface.colours = sheet.colours;
+  }
+  surface.colour = garment.colour;
+  surface.wireframe = layers.wireframe;
+  surface.two_sided = true;
+  surface.offset = static_cast<float>(0.5 * garment.fabric.thickness);
+  surface.sheen = 0.3f;
+  view.surfaces.push_back(surface);
+}
+
+FrameView SceneView::frame(const FrameState& state, const SkinView& skin, const Layers& layers,
+                           const FrameState* other) {
   FrameView view;
-  view.ground = layers.ground && session.scene().description.ground_height.has_value();
-  view.ground_height = static_cast<float>(session.scene().description.ground_height.value_or(0.0));
+  const SceneDescription& description = scene_->description;
+  view.ground = layers.ground && description.ground_height.has_value();
+  view.ground_height = static_cast<float>(description.ground_height.value_or(0.0));
+  const proxies::SweptColliders colliders = state.swept();
   std::span<const Colour> errors;
-  if (const auto colliders = session.colliders().swept().end; layers.proxy_error && !colliders.empty()) {
-    errors = error_colours_.update(session.body_positions(), colliders, error_scale_);
+  if (layers.proxy_error && colliders.size() > 0) {
+    errors = error_colours_.update(skin.positions, colliders.end, error_scale_);
     view.error_scale = error_scale_;
   }
-  if (layers.body) add_body(session, view, layers.wireframe, errors);
-  for (std::size_t g = 0; g < cloth_.size(); ++g) {
-    const cloth::Garment& garment = session.scene().garments[g];
-    const std::vector<Vec3>& particles = session.garment(static_cast<int>(g)).particles().positions;
-    if (layers.cloth) {
-      Sheet& sheet = cloth_[g];
-      sheet.particles.clear();
-      for (const Vec3& p : particles) sheet.particles.push_back(p.cast<float>());
-      SurfaceView surface;
-      if (sheet.grid) {
-        sheet.grid->update(sheet.particles);
-        surface.positions = sheet.grid->positions();
-        surface.normals = sheet.grid->normals();
-        surface.triangles = sheet.grid->triangles();
-      } else {
-        area_weighted_normals(sheet.particles, garment.triangles, sheet.normals);
-        surface.positions = sheet.particles;
-        surface.normals = sheet.normals;
-        surface.triangles = garment.triangles;
-      }
-      surface.colour = garment.colour;
-      surface.wireframe = layers.wireframe;
-      surface.two_sided = true;
-      surface.offset = static_cast<float>(0.5 * garment.fabric.thickness);
-      surface.sheen = 0.3f;
-      view.surfaces.push_back(surface);
+  if (layers.body) add_body(scene_->character.mesh, skin, view, layers.wireframe, errors);
+  if (layers.penetration) colour_by_depth(state, skin);
+  else if (other) colour_by_distance(state, *other);
+  else
+    for (Sheet& sheet : cloth_) sheet.values.clear();
+  view.legend = legend_of(layers);
+  if (other && !layers.penetration)
+    for (const double mm : {1.0, 10.0, 50.0}) {
+      LegendEntry& entry = view.legend.emplace_back();
+      entry.text = fmt::format("{:g} mm apart", mm);
+      entry.colour = error_colour(k_apart_scale, 0.001 * mm);
     }
+  if (layers.penetration && !sideless_.empty()) view.legend.push_back({"no depths: " + sideless_, k_grey});
+  for (std::size_t g = 0; g < cloth_.size(); ++g) {
+    const cloth::Garment& garment = scene_->garments[g];
+    const std::vector<Vec3>& particles = state.garments[g].positions;
+    if (layers.cloth) add_sheet(g, state, layers, view);
     if (layers.particles)
       for (const Vec3& p : particles) view.points.push_back(p.cast<float>());
+    if (layers.strain) add_strain(garment, particles, view.threads);
+    if (layers.attachments) add_attachments(garment, particles, view.marks, view.lines);
+    if (layers.tiles) add_broad_phase(state.broad[g], particles, colliders, view.lines);
+    if (layers.contacts) {
+      touches_.clear();
+      find_touches(garment, particles, colliders, touches_);
+      add_touches(touches_, garment.fabric.contact_offset(), view.lines);
+    }
   }
-  if (layers.proxies) add_proxies(session, view);
-  if (layers.skeleton) add_skeleton(session, view);
+  if (layers.proxies) add_proxies(colliders.end, view.capsules);
+  if (layers.boxes) add_swept_boxes(colliders, view.lines);
+  if (layers.sweeps) add_sweeps(colliders, view.capsules, view.lines);
+  if (layers.skeleton) add_skeleton(scene_->character.skeleton, state.joints, view.lines);
+  if (layers.joints) add_joint_frames(state.joints, view.lines);
   return view;
+}
+
+FrameView SceneView::frame(const Session& session, const Layers& layers, const FrameState* other) {
+  capture(session, captured_);
+  return frame(captured_, {session.body_positions(), session.body_normals()}, layers, other);
+}
+
+std::vector<LegendEntry> legend_of(const Layers& layers) {
+  std::vector<LegendEntry> legend;
+  const auto add = [&](bool shown, std::string_view text, const Colour& colour) {
+    if (!shown) return;
+    LegendEntry& entry = legend.emplace_back();
+    entry.text = text;
+    entry.colour = colour;
+  };
+  add(layers.skeleton, "bones", k_vermilion);
+  add(layers.joints, "joint's x", k_vermilion);
+  add(layers.joints, "joint's y", k_green);
+  add(layers.joints, "joint's z", k_blue);
+  add(layers.proxies, "spheres", k_sky);
+  add(layers.proxies, "capsules", k_orange);
+  add(layers.boxes, "swept boxes of the proxies", k_blue);
+  add(layers.sweeps, "proxies on their way in the frame", k_purple);
+  for (const double percent : {10.0, 5.0, 0.0, -5.0, -10.0})
+    add(layers.strain, percent == 0.0 ? "as at rest" : fmt::format("{:+g} % long", percent),
+        strain_colour(0.01 * percent));
+  add(layers.attachments, "pinned", k_orange);
+  add(layers.attachments, "sewn", k_purple);
+  add(layers.tiles, "tiles with a candidate", k_black);
+  add(layers.tiles, "tiles without", k_grey);
+  add(layers.tiles, "tile to its candidate", k_sky);
+  add(layers.contacts, "touches: at the gap", k_green);
+  add(layers.contacts, "nearer: longer by 10 x the depth", k_orange);
+  add(layers.contacts, "inside the proxy", k_vermilion);
+  for (const double mm : {0.0, 1.0, 4.0, 10.0})
+    add(layers.penetration, fmt::format("{:g} mm in the body", mm), error_colour(k_depth_scale, 0.001 * mm));
+  return legend;
 }
 
 std::vector<Vec3f> motion_points(const Scene& scene) {

@@ -96,7 +96,7 @@ public:
   const FrameTimes& times() const { return times_; }
   std::span<const Transform> world_from_joint() const { return world_; }
   const proxies::ColliderSet& colliders() const { return colliders_; }
-  const cloth::Solver& garment(int g) const { return garments_[g]; } ///< in the order of Scene::garments
+  const cloth::GuardedSolver& garment(int g) const { return garments_[g]; } ///< in the order of Scene::garments
   bool collides_with_body() const { return scene_->description.backend == proxies::Backend::mesh; }
   /// Signed distance of a point from what garment `g` collided with last, at the pose of the frame's end. Only where
   /// it collides with the body, after a frame.

@@ -1,25 +1,9 @@
-// What lies over the picture: transport, layers, timings, messages, help.
+// What lies over the picture: menus, layers and their legend, figures, the answer to "why", transport, messages, help.
 #pragma once
 
-#include "src/viewer/orbit.h"
-#include "src/viewer/player.h"
-
-#include <optional>
-#include <string>
-#include <vector>
+#include "src/viewer/commands.h"
 
 namespace tutu::app {
-
-/// What the user has set.
-struct ViewerState {
-  OrbitCamera orbit;
-  Layers layers;
-  bool playing = true, loop = true, help = false;
-  float time_scale = 1;
-  // What the user has asked for since the last frame; run_viewer does it and clears it.
-  bool step_once = false, restart = false, reset_camera = false, quit = false, seek_worst = false;
-  std::optional<double> seek; ///< s
-};
 
 /// Milliseconds, smoothed so that a person can read them.
 class SmoothTimes {
@@ -41,8 +25,9 @@ void set_panel_style(float scale);
 /// Keys without a character (Home, Esc) come by run_viewer's own callback.
 void read_input(ViewerState& state);
 
-/// All panels; with a scale also the bar of the error overlay. Between ImGui::NewFrame and Render.
-void draw_panels(const Player& player, const SmoothTimes& times, const std::optional<ErrorScale>& error_scale,
-                 ViewerState& state);
+/// All panels; with a scale also the bar of the error overlay. `recent`: files to offer. Between ImGui::NewFrame and
+/// Render.
+void draw_panels(Player& player, const SmoothTimes& times, std::span<const FrameView> views,
+                 std::span<const std::string> recent, ViewerState& state);
 
 } // namespace tutu::app

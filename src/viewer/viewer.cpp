@@ -5,27 +5,34 @@
 #include "src/viewer/pacing.h"
 #include "src/viewer/panel.h"
 #include "src/viewer/window.h"
+#include "src/viewer/window_pictures.h"
 
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
+#include <cctype>
+#include <cmath>
 #include <string>
 
 namespace tutu::app {
 namespace {
 
-constexpr int k_most_steps = 4;          // a drawn frame, to catch up
-constexpr double k_step_budget = 0.05;   // s a drawn frame may spend on steps after the first
 constexpr double k_longest_pause = 0.25; // s; a window that was dragged or hidden does not owe the time
+constexpr int k_most_steps = 60;         // a drawn frame, to catch up: all that the pause can owe
 constexpr double k_idle_wait = 0.05;     // s between pictures while nothing plays
 constexpr float k_start_yaw = 0.35f, k_start_pitch = 0.08f;
+constexpr float k_click = 8; // px around the pointer that a click finds
+
+ViewerState& state_of(GLFWwindow* window) { return *static_cast<ViewerState*>(glfwGetWindowUserPointer(window)); }
 
 /// For keys that write nothing. By callback, since a key that is hit between two slow pictures is up again when asked.
 void note_key(GLFWwindow* window, int key, int, int action, int) {
-  if (action != GLFW_PRESS) return;
-  ViewerState& state = *static_cast<ViewerState*>(glfwGetWindowUserPointer(window));
-  if (key == GLFW_KEY_HOME) state.restart = true;
-  if (key == GLFW_KEY_ESCAPE) state.quit = true;
+  const bool goes_on = key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT; // as long as it is held
+  if (action == GLFW_PRESS || (action == GLFW_REPEAT && goes_on)) apply_key(key, state_of(window));
+}
+
+void note_drop(GLFWwindow* window, int count, const char** paths) {
+  if (count > 0) state_of(window).open = paths[0];
 }
 
 /// Looks at everything there is, from a little above.
@@ -47,68 +54,91 @@ OrbitCamera whole_view(const FrameView& view, float aspect) {
   return frame_orbit(lo, hi, k_start_yaw, k_start_pitch, aspect);
 }
 
-/// Does what the user asked for and what the clock owes.
-void advance(Player& player, ViewerState& state, Pacing& pacing, double elapsed) {
-  if (state.restart) player.restart();
+/// Does what the user asked for and what the clock owes. `filming`: one frame a picture, however long it takes.
+void advance(Player& player, ViewerState& state, Pacing& pacing, double elapsed, bool filming) {
+  if (state.rewind) player.rewind();
   if (state.seek_worst) {
     if (const auto worst = player.worst_time()) state.seek = *worst;
     state.playing = false;
   }
-  state.seek_worst = false;
   if (state.seek) player.seek(*state.seek);
-  if (state.restart || state.seek) pacing.forget();
-  int due = 0;
-  if (state.playing)
-    due = pacing.steps_due(std::min(elapsed, k_longest_pause), state.time_scale, player.frame_seconds(), k_most_steps);
-  else pacing.forget();
-  if (state.step_once) {
-    due = 1;
+  if (state.rewind || state.seek) pacing.forget();
+  if (state.steps != 0) {
+    player.go(state.steps);
     state.playing = false;
   }
-  state.restart = state.step_once = false;
+  state.rewind = state.seek_worst = false;
   state.seek.reset();
+  state.steps = 0;
 
-  const double start = glfwGetTime();
-  for (int i = 0; i < due; ++i) {
-    if (i > 0 && glfwGetTime() - start > k_step_budget) break;
-    if (player.time() + 0.5 * player.frame_seconds() > player.duration()) {
-      if (state.loop) player.restart();
-      else state.playing = false;
-      break;
-    }
-    if (!player.step()) {
-      state.playing = false;
-      break;
-    }
+  player.go(0);                            // what was simulated since the last picture
+  if (!state.playing || player.behind()) { // what cannot be simulated in time is not owed either
+    pacing.forget();
+  } else if (player.at_end()) {
+    if (state.loop && player.message().empty()) player.rewind();
+    else state.playing = false;
+  } else {
+    const int due =
+        pacing.steps_due(std::min(elapsed, k_longest_pause), state.time_scale, player.frame_seconds(), k_most_steps);
+    if (filming) player.go(1);
+    else if (due > 0) player.go(due);
   }
+}
+
+/// The part of the window that one of `count` views has: pixels from the left, and how many.
+std::pair<int, int> part_of(int width, std::size_t k, std::size_t count) {
+  const int each = width / static_cast<int>(count);
+  return {static_cast<int>(k) * each, each};
+}
+
+/// Letters, digits, dots and dashes only.
+std::string file_stem(std::string title) {
+  for (char& c : title)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '_') c = '-';
+  return title;
+}
+
+void pick(Player& player, const ViewerState& state, GLFWwindow* window, std::size_t views) {
+  int width = 0, height = 0; // of the window, in which the pointer is told
+  glfwGetWindowSize(window, &width, &height);
+  const int each = part_of(width, 0, views).second;
+  const Eigen::Vector2f pixel(std::fmod(state.click->x(), static_cast<float>(each)), state.click->y());
+  const Camera camera = state.orbit.camera();
+  const float metres_per_pixel = 2 * std::tan(0.5f * camera.vertical_fov) / static_cast<float>(height);
+  player.pick({camera.eye, ray_through(camera, each, height, pixel), k_click * metres_per_pixel});
 }
 
 } // namespace
 
-int run_viewer(Player& player, const ViewerOptions& options) {
+ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
   const GlfwSession glfw;
   const Window window(options.width, options.height, "tutu - " + player.title());
   ViewerState state;
   glfwSetWindowUserPointer(window.handle(), &state);
   glfwSetKeyCallback(window.handle(), note_key); // before ImGui's, which then calls it
+  glfwSetDropCallback(window.handle(), note_drop);
   const ImGuiSession imgui(window.handle());
   Renderer renderer;
+  WindowPictures pictures(options.pictures, file_stem(player.title()));
 
   state.layers = options.layers;
   state.time_scale = static_cast<float>(options.time_scale);
   state.playing = options.playing;
   state.seek_worst = options.start_at_worst;
   state.loop = options.loop;
+  state.note = options.message;
   state.reset_camera = true;
   Pacing pacing;
   SmoothTimes times;
-  double last = glfwGetTime();
-  for (int frame = 0; !glfwWindowShouldClose(window.handle()) && !interrupted() && !state.quit; ++frame) {
+  double last = glfwGetTime(), filmed = -1;
+  for (int frame = 0; !glfwWindowShouldClose(window.handle()) && !interrupted() && !state.quit && !state.open;
+       ++frame) {
     if (options.max_frames && frame >= *options.max_frames) break;
-    if (state.playing || options.max_frames) glfwPollEvents();
+    if (options.close_at_end && frame > 0 && player.at_end()) break;
+    if (state.playing || player.behind() || options.max_frames) glfwPollEvents();
     else glfwWaitEventsTimeout(k_idle_wait);
     const double now = glfwGetTime();
-    advance(player, state, pacing, now - last);
+    advance(player, state, pacing, now - last, pictures.filming());
     last = now;
 
     int width = 0, height = 0;
@@ -118,21 +148,40 @@ int run_viewer(Player& player, const ViewerOptions& options) {
       continue;
     }
     const double draw_start = glfwGetTime();
-    const FrameView view = player.view(state.layers);
-    if (state.reset_camera) state.orbit = whole_view(view, static_cast<float>(width) / static_cast<float>(height));
+    const std::vector<FrameView> views = player.views(state.layers);
+    if (state.reset_camera) {
+      const auto [left, each] = part_of(width, 0, views.size());
+      state.orbit = whole_view(views.front(), static_cast<float>(each) / static_cast<float>(height));
+    }
     state.reset_camera = false;
     imgui.begin_frame();
     read_input(state);
-    draw_panels(player, times, view.error_scale, state);
+    if (state.click) pick(player, state, window.handle(), views.size());
+    state.click.reset();
+    draw_panels(player, times, views, options.recent, state);
     imgui.end_frame();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
-    renderer.draw(view, state.orbit.camera(), width, height);
+    for (std::size_t k = 0; k < views.size(); ++k) {
+      const auto [left, each] = part_of(width, k, views.size());
+      renderer.draw(views[k], state.orbit.camera(), each, height, 1.0f, left);
+    }
+    glViewport(0, 0, width, height);
     imgui.draw();
     glFinish(); // so that the time below is the drawing's, not that of waiting for the display
     times.add(player.stage_times(), 1e3 * (glfwGetTime() - draw_start));
+    if (state.screenshot && !player.behind()) {
+      const int index = static_cast<int>(std::lround(player.time() / player.frame_seconds()));
+      state.note = pictures.screenshot(read_window(width, height), index);
+      state.screenshot = false;
+    }
+    if (state.toggle_film) state.note = pictures.toggle_film(width, height, 1.0 / player.frame_seconds());
+    state.toggle_film = false;
+    if (pictures.filming() && player.time() != filmed) state.note = pictures.add(read_window(width, height));
+    filmed = player.time();
     glfwSwapBuffers(window.handle());
   }
-  return 0;
+  if (pictures.filming()) pictures.toggle_film(0, 0, 1.0);
+  return {state.layers, state.playing, state.time_scale, state.open};
 }
 
 } // namespace tutu::app

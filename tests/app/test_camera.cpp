@@ -150,5 +150,16 @@ TEST(Pacing, ForgetsWhatCannotBeCaughtUp) {
   EXPECT_EQ(pacing.steps_due(0, 1, 1.0 / 60, 4), 0);
 }
 
+TEST(Camera, ARayGoesThroughThePixelItIsAskedFor) {
+  const Camera camera{.eye = {1, 2, 3}, .target = {0.2f, 0.9f, -0.4f}, .vertical_fov = 0.7f};
+  for (const Eigen::Vector2f& pixel : {Eigen::Vector2f(10, 20), Eigen::Vector2f(320, 240), Eigen::Vector2f(600, 470)}) {
+    const Vec3f way = ray_through(camera, 640, 480, pixel);
+    EXPECT_NEAR(way.norm(), 1.0f, 1e-6f);
+    const auto back = project(camera, 640, 480, camera.eye + 3.0f * way);
+    ASSERT_TRUE(back);
+    EXPECT_LT((*back - pixel).norm(), 0.01f);
+  }
+}
+
 } // namespace
 } // namespace tutu::app

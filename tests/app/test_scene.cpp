@@ -105,19 +105,44 @@ TEST(Session, DrawingDoesNotChangeTheRun) {
 
 TEST(Session, RestartingGivesTheSameRun) {
   const Scene& scene = dance();
-  ScenePlayer player(scene, rest_of(scene));
   Session session(scene);
   session.start(rest_of(scene));
-  for (int frame = 0; frame < 3; ++frame) {
-    player.step();
-    session.advance();
-  }
+  for (int frame = 0; frame < 3; ++frame) session.advance();
   const std::uint64_t hash = session.state_hash();
   session.jump(3.0);
   session.start(rest_of(scene));
   for (int frame = 0; frame < 3; ++frame) session.advance();
   EXPECT_EQ(session.state_hash(), hash);
-  EXPECT_NEAR(player.time(), session.time(), 1e-12);
+}
+
+TEST(ScenePlayer, GoesOnAndBackAndShowsTheSameFrames) {
+  const Scene& scene = dance();
+  Session session(scene);
+  session.start(rest_of(scene));
+  std::vector<std::uint64_t> hashes = {session.state_hash()};
+  for (int frame = 0; frame < 6; ++frame) {
+    session.advance();
+    hashes.push_back(session.state_hash());
+  }
+  ScenePlayer player(scene, rest_of(scene), 6);
+  int shown = 0;
+  for (const int way : {3, -2, 4, -1, 100, -100, 5}) {
+    player.go(way);
+    shown = std::clamp(shown + way, 0, 6);
+    while (player.behind()) (void)player.views({.body = false});
+    EXPECT_EQ(player.figures().front().frame, shown);
+    EXPECT_EQ(player.figures().front().state_hash, hashes[shown]) << shown;
+    EXPECT_NEAR(player.time(), shown * session.frame_seconds(), 1e-12);
+    EXPECT_EQ(player.at_end(), shown == 6);
+  }
+  player.rewind();
+  EXPECT_EQ(player.figures().front().state_hash, hashes[0]);
+  player.seek(2 * session.frame_seconds());
+  EXPECT_EQ(player.figures().front().state_hash, hashes[2]);
+  EXPECT_TRUE(player.why().front().empty());
+  player.pick(0, 100);
+  EXPECT_EQ(player.why_shown()->frame, 2);
+  EXPECT_EQ(player.why_shown()->particle, 100);
 }
 
 TEST(Drape, ShippedDrapeFitsTheDance) {
