@@ -11,10 +11,15 @@
 namespace tutu::app {
 namespace {
 
+constexpr double k_clock_noise = 1.1; // times as long: as far as the same work is seen to differ in one chart
+
 /// Why a run failed, in a few words; "" when it did not.
 std::string reason_of(const Row& row) {
   const std::string& outcome = row.text("outcome");
-  if (outcome == "ok") return "";
+  if (outcome == "ok") {
+    const double depth = row.number("in_body_mm_anywhere").value_or(0.0);
+    return depth > k_through_body_mm ? fmt::format("{:.0f} mm deep in the body", depth) : "";
+  }
   if (outcome == "recovered") return "diverged " + row.text("recoveries") + " times";
   if (outcome == "diverged") return "diverged for good";
   return outcome + ": " + row.text("reason").substr(0, 60);
@@ -24,7 +29,7 @@ std::string shown(const std::optional<double>& value, double scale, const char* 
   return value ? fmt::format(fmt::runtime(format), scale * *value) : "-";
 }
 
-/// Errors of a point in all axes; nothing when one is missing.
+/// Cost and errors of a point in all axes; nothing when one is missing.
 std::optional<std::vector<double>> respects_of(const ChartPoint& point) {
   std::vector<double> values = {point.cost()};
   for (const ErrorAxis& axis : error_axes()) {
@@ -33,6 +38,14 @@ std::optional<std::vector<double>> respects_of(const ChartPoint& point) {
     values.push_back(*value);
   }
   return values;
+}
+
+/// The very same errors: it moved the same. What such settings differ in is the noise of the clock, as long as it is no
+/// more.
+bool moves_the_same(const ChartPoint& a, const ChartPoint& b) {
+  const auto of_a = respects_of(a), of_b = respects_of(b);
+  return of_a && of_b && std::equal(of_a->begin() + 1, of_a->end(), of_b->begin() + 1) &&
+         a.cost() <= k_clock_noise * b.cost();
 }
 
 } // namespace
@@ -111,8 +124,9 @@ std::string default_verdict(const std::vector<ChartPoint>& points) {
     const std::vector<int> front = front_of(points, axis);
     const auto error = found->figure(axis.column);
     if (!error) continue;
-    const auto own = static_cast<int>(found - points.begin());
-    if (std::find(front.begin(), front.end(), own) != front.end()) {
+    const bool on_it = std::any_of(front.begin(), front.end(),
+                                   [&](int i) { return &points[i] == &*found || moves_the_same(*found, points[i]); });
+    if (on_it) {
       text += fmt::format("default: on the front of {}\n", axis.stem);
       continue;
     }
@@ -128,8 +142,7 @@ std::string default_verdict(const std::vector<ChartPoint>& points) {
     std::string better;
     for (const ChartPoint& point : points) {
       const auto others = respects_of(point);
-      // With the very same errors it moved the same: what differs is the noise of the clock.
-      if (!others || !point.good() || std::equal(others->begin() + 1, others->end(), own->begin() + 1)) continue;
+      if (!others || !point.good() || moves_the_same(*found, point)) continue;
       if (dominates(*others, *own)) better += (better.empty() ? "" : "; ") + point.name;
     }
     text += better.empty() ? "default: nothing is as fast and as exact in all of these at once\n"

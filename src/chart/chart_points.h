@@ -19,6 +19,10 @@ struct ErrorAxis {
 };
 const std::vector<ErrorAxis>& error_axes();
 
+/// mm. Cloth that ends a frame deeper in the true body has gone through it, whatever the rest of its figures: a setting
+/// that leaves out what the body is made of would else be among the fastest and the least stretched.
+inline constexpr double k_through_body_mm = 20.0;
+
 struct ChartPoint {
   std::vector<Row> rows; ///< of its runs
   std::string name;      ///< what a person called it, or how it differs from the default

@@ -144,4 +144,34 @@ TEST(ChartPoints, OneFailedRunFailsTheSettingAndKeepsItOffTheFront) {
   EXPECT_THAT(points_text(points), ::testing::HasSubstr("FAILED 1 of 2: diverged 3 times"));
 }
 
+/// With a figure on every axis.
+Row whole_row(int substeps, double ms, double trajectory, double body, double stretch) {
+  Row r = row(substeps, 0, "ok", ms, trajectory);
+  r.set("drape_mm_rms", 5.0);
+  r.set("in_body_mm_anywhere", body);
+  r.set("stretch_p99", stretch);
+  return r;
+}
+
+TEST(ChartPoints, WhatGoesThroughTheBodyHasFailed) {
+  const auto points =
+      points_of({whole_row(12, 1.0, 4.0, 2.0, 0.02), whole_row(6, 0.1, 4.0, 81.0, 0.001)}, default_values());
+  EXPECT_TRUE(points[0].good());
+  EXPECT_EQ(points[1].reason, "81 mm deep in the body");
+  for (const ErrorAxis& axis : error_axes())
+    EXPECT_THAT(front_of(points, axis), ::testing::ElementsAre(0)) << axis.stem;
+}
+
+TEST(ChartPoints, OfSettingsThatMoveTheSameTheClockDoesNotChoose) {
+  Row own = whole_row(12, 1.0, 4.0, 2.0, 0.02);
+  own.set("name", "default");
+  const auto verdict = [&](double ms, double trajectory) {
+    return default_verdict(points_of({own, whole_row(6, ms, trajectory, 2.0, 0.02)}, default_values()));
+  };
+  EXPECT_THAT(verdict(0.95, 4.0), ::testing::HasSubstr("default: on the front of trajectory\n"));
+  EXPECT_THAT(verdict(0.5, 4.0),
+              ::testing::HasSubstr("default: not on the front of trajectory: 6 substeps has 4 in 0.500 ms"));
+  EXPECT_THAT(verdict(0.95, 3.9), ::testing::HasSubstr("default: not on the front of trajectory: 6 substeps"));
+}
+
 } // namespace
