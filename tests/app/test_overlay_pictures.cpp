@@ -4,6 +4,7 @@
 #include "src/export/png.h"
 #include "src/render/offscreen.h"
 #include "src/scene/scene_view.h"
+#include "tests/support/opengl_here.h"
 #include "tests/support/paths.h"
 #include "tests/support/read_png.h"
 #include "tests/support/small_scene.h"
@@ -30,12 +31,8 @@ constexpr Expected k_expected[] = {
 };
 
 TEST(OverlayPictures, EachChangesItsShareAndLooksAsItsReference_slow) {
-  std::optional<Offscreen> offscreen;
-  try {
-    offscreen.emplace(OffscreenOptions{k_width, k_height, 1});
-  } catch (const std::runtime_error& error) {
-    GTEST_SKIP() << "no OpenGL here: " << error.what();
-  }
+  if (const std::string missing = test::missing_opengl(); !missing.empty()) GTEST_SKIP() << missing;
+  Offscreen offscreen({k_width, k_height, 1});
   const bool write = std::getenv("TUTU_WRITE_GOLDEN") != nullptr;
   const auto references = test::source_file("tests/fixtures/overlays");
   const auto folder = test::scratch_folder();
@@ -50,14 +47,14 @@ TEST(OverlayPictures, EachChangesItsShareAndLooksAsItsReference_slow) {
   const SkinView skin{session.body_positions(), session.body_normals()};
   SceneView view(scene);
   const Camera camera =
-      frame_camera(Vec3f(-0.25f, 0.1f, -0.25f), Vec3f(0.25f, 0.9f, 0.25f), 0.6f, 0.25f, offscreen->aspect());
-  const Image plain = offscreen->draw(view.frame(state, skin, {}), camera);
+      frame_camera(Vec3f(-0.25f, 0.1f, -0.25f), Vec3f(0.25f, 0.9f, 0.25f), 0.6f, 0.25f, offscreen.aspect());
+  const Image plain = offscreen.draw(view.frame(state, skin, {}), camera);
   for (const Expected& expected : k_expected) {
     SCOPED_TRACE(expected.layer);
     Layers layers;
     for (const LayerInfo& layer : k_layers)
       if (std::string(layer.name) == expected.layer) layers.*layer.member = true;
-    const Image image = offscreen->draw(view.frame(state, skin, layers), camera);
+    const Image image = offscreen.draw(view.frame(state, skin, layers), camera);
     const double share = test::share_changed(plain, image);
     EXPECT_GE(share, expected.least);
     EXPECT_LE(share, expected.most);

@@ -5,6 +5,7 @@
 #include "src/scene/proxy_error.h"
 #include "src/scene/scene_view.h"
 #include "tests/support/capsule_character.h"
+#include "tests/support/opengl_here.h"
 #include "tests/support/paths.h"
 
 #include <gtest/gtest.h>
@@ -118,14 +119,10 @@ TEST_F(ProxyError, ThePictureShowsBothSidesAndTheBar_slow) {
   const FrameView frame = view.frame(session, layers);
   ASSERT_TRUE(frame.error_scale);
   ASSERT_FALSE(frame.surfaces.front().colours.empty());
-  std::optional<Offscreen> offscreen;
-  try {
-    offscreen.emplace(OffscreenOptions{480, 480, 1});
-  } catch (const std::runtime_error& error) {
-    GTEST_SKIP() << "no OpenGL here: " << error.what();
-  }
+  if (const std::string missing = test::missing_opengl(); !missing.empty()) GTEST_SKIP() << missing;
+  Offscreen offscreen({480, 480, 1});
   const auto points = session.body_positions();
-  const Image image = offscreen->draw(frame, frame_camera(points, 0.0f, 0.1f, offscreen->aspect()));
+  const Image image = offscreen.draw(frame, frame_camera(points, 0.0f, 0.1f, offscreen.aspect()));
   int orange = 0, blue = 0, orange_left = 0;
   for (int y = 0; y < 400; ++y) // above the bar
     for (int x = 0; x < 480; ++x) {

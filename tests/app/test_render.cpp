@@ -2,6 +2,7 @@
 #include "src/export/png.h"
 #include "src/render/camera.h"
 #include "src/render/offscreen.h"
+#include "tests/support/opengl_here.h"
 #include "tests/support/paths.h"
 
 #include "rig/file_io.h"
@@ -74,11 +75,8 @@ Camera camera_from(float z) { return {.eye = {0, 1, z}, .target = {0, 1, 0}}; }
 class Picture : public ::testing::Test {
 protected:
   void SetUp() override {
-    try {
-      offscreen_.emplace(OffscreenOptions{.width = k_width, .height = k_height});
-    } catch (const std::runtime_error& error) {
-      GTEST_SKIP() << "no OpenGL here: " << error.what();
-    }
+    if (const std::string missing = test::missing_opengl(); !missing.empty()) GTEST_SKIP() << missing;
+    offscreen_.emplace(OffscreenOptions{.width = k_width, .height = k_height});
   }
   Image draw(const FrameView& view, const Camera& camera) { return offscreen_->draw(view, camera); }
 
@@ -313,11 +311,7 @@ TEST_F(Picture, SupersamplingSoftensEdgesAndKeepsTheRest_slow) {
 }
 
 TEST(OffscreenSizes, OutOfRangeAreRefused_slow) {
-  try {
-    const GlContext context;
-  } catch (const std::runtime_error& error) {
-    GTEST_SKIP() << "no OpenGL here: " << error.what();
-  }
+  if (const std::string missing = test::missing_opengl(); !missing.empty()) GTEST_SKIP() << missing;
   EXPECT_THROW(Offscreen({.width = 0, .height = 10}), std::invalid_argument);
   EXPECT_THROW(Offscreen({.width = 10, .height = 9000}), std::invalid_argument);
   EXPECT_THROW(Offscreen({.width = 10, .height = 10, .supersample = 5}), std::invalid_argument);
