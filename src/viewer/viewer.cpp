@@ -137,13 +137,18 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
     if (options.close_at_end && frame > 0 && player.at_end()) break;
     if (state.playing || player.behind() || options.max_frames) glfwPollEvents();
     else glfwWaitEventsTimeout(k_idle_wait);
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window.handle(), &width, &height);
+    const bool minimised = width == 0 || height == 0;
+    // What was typed counts before anything is drawn: a picture that is asked for shows what the keys before it did.
+    if (!minimised) {
+      imgui.begin_frame();
+      read_input(state);
+    }
     const double now = glfwGetTime();
     advance(player, state, pacing, now - last, pictures.filming());
     last = now;
-
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(window.handle(), &width, &height);
-    if (width == 0 || height == 0) { // minimised
+    if (minimised) {
       glfwWaitEventsTimeout(k_idle_wait);
       continue;
     }
@@ -154,8 +159,6 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
       state.orbit = whole_view(views.front(), static_cast<float>(each) / static_cast<float>(height));
     }
     state.reset_camera = false;
-    imgui.begin_frame();
-    read_input(state);
     if (state.click) pick(player, state, window.handle(), views.size());
     state.click.reset();
     draw_panels(player, times, views, options.recent, state);
