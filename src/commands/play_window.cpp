@@ -85,6 +85,7 @@ int play_in_window(const PlayOptions& options, Draped first, std::optional<Drape
   for (;;) {
     remember_file(first.scene.description.file);
     viewer.recent = recent_files();
+    viewer.browse = first.scene.description.file.parent_path();
     viewer.message = message;
     const int frames = frames_to_play(options, first.scene);
     ViewerEnd end;

@@ -13,6 +13,7 @@ void scale_time(ViewerState& state, float factor) {
 }
 
 constexpr std::array k_commands = {
+    ViewerCommand{"File", "open ...", "F3", 0, GLFW_KEY_F3, [](ViewerState& s) { s.browse = true; }},
     ViewerCommand{"File", "picture of the window", "F12", 0, GLFW_KEY_F12, [](ViewerState& s) { s.screenshot = true; }},
     ViewerCommand{"File", "begin or end a film", "F9", 0, GLFW_KEY_F9, [](ViewerState& s) { s.toggle_film = true; }},
     ViewerCommand{"File", "quit", "Esc", 0, GLFW_KEY_ESCAPE, [](ViewerState& s) { s.quit = true; }},

@@ -20,7 +20,7 @@ struct ViewerState {
   // What the user has asked for since the last frame; run_viewer does it and clears it.
   int steps = 0; ///< frames on or back
   bool rewind = false, reset_camera = false, quit = false, seek_worst = false;
-  bool screenshot = false, toggle_film = false;
+  bool screenshot = false, toggle_film = false, browse = false;
   std::optional<double> seek;           ///< s
   std::optional<Eigen::Vector2f> click; ///< on the picture, pixels from its upper left corner
   std::optional<std::string> open;      ///< a file

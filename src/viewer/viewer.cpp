@@ -2,6 +2,7 @@
 
 #include "src/interrupt.h"
 #include "src/render/renderer.h"
+#include "src/viewer/file_dialog.h"
 #include "src/viewer/pacing.h"
 #include "src/viewer/panel.h"
 #include "src/viewer/window.h"
@@ -10,9 +11,11 @@
 #include <epoxy/gl.h>
 
 #include <GLFW/glfw3.h>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 namespace tutu::app {
 namespace {
@@ -22,6 +25,9 @@ constexpr int k_most_steps = 60;         // a drawn frame, to catch up: all that
 constexpr double k_idle_wait = 0.05;     // s between pictures while nothing plays
 constexpr float k_start_yaw = 0.35f, k_start_pitch = 0.08f;
 constexpr float k_click = 8; // px around the pointer that a click finds
+
+/// What the importer and the scene reader take.
+constexpr std::array<std::string_view, 6> k_openable = {".json", ".dae", ".gltf", ".glb", ".fbx", ".x"};
 
 ViewerState& state_of(GLFWwindow* window) { return *static_cast<ViewerState*>(glfwGetWindowUserPointer(window)); }
 
@@ -121,6 +127,8 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
   Renderer renderer;
   WindowPictures pictures(options.pictures, file_stem(player.title()));
 
+  FileDialog dialog(options.browse, k_openable);
+
   state.layers = options.layers;
   state.time_scale = static_cast<float>(options.time_scale);
   state.playing = options.playing;
@@ -162,6 +170,13 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
     if (state.click) pick(player, state, window.handle(), views.size());
     state.click.reset();
     draw_panels(player, times, views, options.recent, state);
+    if (state.browse) dialog.open();
+    state.browse = false;
+    if (dialog.is_open() && state.quit) { // Esc leaves the dialog first
+      dialog.close();
+      state.quit = false;
+    }
+    if (const auto chosen = dialog.draw()) state.open = chosen->string();
     imgui.end_frame();
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
     for (std::size_t k = 0; k < views.size(); ++k) {

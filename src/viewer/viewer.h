@@ -17,6 +17,7 @@ struct ViewerOptions {
   bool loop = true;                     ///< at the end of the motion back to its start, else stop there
   bool close_at_end = false;            ///< closes by itself with the last frame
   std::optional<int> max_frames = {};   ///< closes by itself after that many drawn frames, for tests
+  std::filesystem::path browse = ".";   ///< folder in which a file to open is looked for first
   std::filesystem::path pictures = "."; ///< folder of screenshots and films
   std::vector<std::string> recent = {}; ///< files that the menu offers to open
   std::string message = {};             ///< shown until something is played: what went wrong with the last file
