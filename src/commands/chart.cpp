@@ -95,7 +95,6 @@ std::vector<std::string> call_of(const Options& options, const CellTask& task, c
 /// Rows of other machines, and of a cluster's jobs that ended after the chart that asked for them.
 void merge_others(const Options& options, const fs::path& file) {
   for (const std::string& other : options.merge) {
-    if (!fs::exists(other)) throw InputError(other, "", "no such file", "rows of tutu cell or tutu chart (.csv)");
     fmt::print(stderr, "note: {} rows of {} are new\n", merge_rows(other, file), other);
   }
   if (!fs::exists(fs::path(options.out) / "slurm")) return;
@@ -160,6 +159,10 @@ int run(const Options& options) {
   const fs::path folder = options.out;
   require_chart(folder / "chart.svg");
   if (options.slurm) require_slurm();
+  for (const std::string& other : options.merge) { // told before long work
+    if (!fs::exists(other)) throw InputError(other, "", "no such file", "rows of tutu cell or tutu chart (.csv)");
+    (void)read_results(other);
+  }
   fs::create_directories(folder);
   catch_interrupt();
   const Scene scene = options.chart.load();
