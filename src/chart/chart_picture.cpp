@@ -83,6 +83,20 @@ std::string data_text(std::string text) {
   return '"' + text + '"';
 }
 
+/// Place of the cross, and of its upright text, which keeps a line from the one before.
+std::string failed_rows(std::vector<std::pair<double, std::string>> failures, double left, double right, double y) {
+  std::sort(failures.begin(), failures.end());
+  constexpr double k_line = 14.0; // px
+  const double line = std::pow(right / left, k_line / k_plot_width);
+  std::string rows;
+  double last = 0.0;
+  for (const auto& [x, text] : failures) {
+    last = std::max(x, last * line);
+    rows += fmt::format("{} {} {} {}\n", x, y, last, data_text(text));
+  }
+  return rows;
+}
+
 } // namespace
 
 void write_chart_picture(const std::vector<ChartPoint>& points, const ErrorAxis& axis, const std::string& scene,
@@ -98,19 +112,20 @@ void write_chart_picture(const std::vector<ChartPoint>& points, const ErrorAxis&
   }
   if (x.empty()) x = {0.1, 1.0};
   if (y.empty()) y = {axis.floor, 1.0};
-  const double top =
-      y.high * std::pow(std::max(10.0, y.high / y.low), 0.35) * 1.3; // room for the failed ones and their reasons
+  const bool all_good = std::all_of(points.begin(), points.end(), [](const ChartPoint& p) { return p.good(); });
+  // Room for the failed ones and their reasons.
+  const double top = 1.3 * y.high * std::pow(std::max(10.0, y.high / y.low), all_good ? 0.1 : 1.1);
+  const double left = x.low / 1.5, right = x.high * 3.0, bottom = y.low / 2.0;
 
-  std::string families[std::size(k_families)], failed, step, labels, rings;
+  std::string families[std::size(k_families)], step, labels, rings;
+  std::vector<std::pair<double, std::string>> failures; // where along the upper edge, and what is said
   for (const ChartPoint& p : points) {
     const Drawn at = place(p);
     if (p.good()) families[family_of(p)] += fmt::format("{} {}\n", at.x, at.y);
-    else
-      failed +=
-          fmt::format("{} {} {}\n", p.cost() > 0.0 ? at.x : x.high, top / 1.15, data_text(p.name + ": " + p.reason));
+    else failures.emplace_back(p.cost() > 0.0 ? at.x : x.high, p.name + ": " + p.reason);
   }
+  const std::string failed = failed_rows(std::move(failures), left, right, top / 1.15);
   for (const int i : front) step += fmt::format("{} {}\n", place(points[i]).x, place(points[i]).y);
-  const double left = x.low / 1.5, right = x.high * 3.0, bottom = y.low / 2.0;
   const auto pixels = [&](const Drawn& at) {
     return Drawn{k_plot_width * std::log(at.x / left) / std::log(right / left),
                  k_plot_height * std::log(at.y / bottom) / std::log(top / bottom)};
@@ -147,7 +162,8 @@ void write_chart_picture(const std::vector<ChartPoint>& points, const ErrorAxis&
   if (!failed.empty()) {
     script += block("failed", failed);
     add("$failed using 1:2 with points pt 2 ps 1.6 lw 2 lc rgb '#cc0000' title 'failed'");
-    add("$failed using 1:2:3 with labels right rotate by 30 offset -1,-0.6 noenhanced tc rgb '#cc0000' notitle");
+    add("$failed using 3:2:4 with labels right rotate by 90 offset 0,-0.8 font ',10' noenhanced tc rgb '#cc0000' "
+        "notitle");
   }
   if (!rings.empty()) {
     script += block("rings", rings);

@@ -18,7 +18,7 @@ std::string reason_of(const Row& row) {
   const std::string& outcome = row.text("outcome");
   if (outcome == "ok") {
     const double depth = row.number("in_body_mm_anywhere").value_or(0.0);
-    return depth > k_through_body_mm ? fmt::format("{:.0f} mm deep in the body", depth) : "";
+    return depth > k_through_body_mm ? fmt::format("{:.0f} mm in the body", depth) : "";
   }
   if (outcome == "recovered") return "diverged " + row.text("recoveries") + " times";
   if (outcome == "diverged") return "diverged for good";
@@ -76,6 +76,13 @@ std::optional<double> ChartPoint::figure(const std::string& column) const {
     if (const auto value = row.number(column)) values.push_back(*value);
   if (values.empty()) return {};
   return median(std::move(values));
+}
+
+double ChartPoint::least_ms(const char* column) const {
+  double least = 0.0;
+  for (const Row& row : rows)
+    if (const auto ms = row.number(column); ms && (least == 0.0 || *ms < least)) least = *ms;
+  return least;
 }
 
 std::vector<ChartPoint> points_of(const std::vector<Row>& rows, const SettingValues& default_setting) {
@@ -162,8 +169,8 @@ std::string points_text(const std::vector<ChartPoint>& points) {
     const auto cell = [&](const char* column, double scale, const char* format = "{:.2f}") {
       return shown(p->figure(column), scale, format);
     };
-    text += fmt::format("{:>8} {:>8} {:>11} {:>9} {:>8} {:>9} {:>8} {:>8}  {}{}\n", cell("ms_p99", 1.0, "{:.3f}"),
-                        cell("ms_median", 1.0, "{:.3f}"), cell("trajectory_mm_rms", 1.0), cell("drape_mm_rms", 1.0),
+    text += fmt::format("{:>8.3f} {:>8.3f} {:>11} {:>9} {:>8} {:>9} {:>8} {:>8}  {}{}\n", p->cost(),
+                        p->least_ms("ms_median"), cell("trajectory_mm_rms", 1.0), cell("drape_mm_rms", 1.0),
                         cell("in_body_mm_anywhere", 1.0), cell("stretch_p99", 100.0), cell("missed_contacts", 100.0),
                         cell("false_contacts", 100.0), p->name,
                         p->good() ? "" : fmt::format("  FAILED {} of {}: {}", p->failed, p->rows.size(), p->reason));

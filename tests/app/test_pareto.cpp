@@ -125,7 +125,7 @@ TEST(ChartPoints, RunsOfOneSettingAreOnePoint) {
   const auto points = points_of(rows, default_values());
   ASSERT_EQ(points.size(), 2u);
   EXPECT_EQ(points[0].rows.size(), 3u);
-  EXPECT_EQ(points[0].cost(), 2.0);
+  EXPECT_EQ(points[0].cost(), 1.0);
   EXPECT_EQ(points[0].figure("trajectory_mm_rms"), 5.0);
   EXPECT_EQ(points[0].figure("drape_mm_rms"), std::nullopt);
   EXPECT_EQ(points[1].name, "6 substeps");
@@ -157,7 +157,7 @@ TEST(ChartPoints, WhatGoesThroughTheBodyHasFailed) {
   const auto points =
       points_of({whole_row(12, 1.0, 4.0, 2.0, 0.02), whole_row(6, 0.1, 4.0, 81.0, 0.001)}, default_values());
   EXPECT_TRUE(points[0].good());
-  EXPECT_EQ(points[1].reason, "81 mm deep in the body");
+  EXPECT_EQ(points[1].reason, "81 mm in the body");
   for (const ErrorAxis& axis : error_axes())
     EXPECT_THAT(front_of(points, axis), ::testing::ElementsAre(0)) << axis.stem;
 }
