@@ -1,8 +1,10 @@
 #include "src/proxy_edit/proxy_figures.h"
 
 #include "proxies/capsule_union.h"
+#include "proxies/validate.h"
 
 #include <cmath>
+#include <stdexcept>
 
 namespace tutu::app {
 namespace {
@@ -25,10 +27,18 @@ private:
   int samples_ = 0;
 };
 
+proxies::SkinSamples samples_of(const rig::Mesh& mesh, int count) {
+  std::vector<char> keep; // empty: all
+  try {
+    keep = proxies::outer_triangles(proxies::BodyMesh(mesh.positions, mesh.triangles));
+  } catch (const std::invalid_argument&) {
+  }
+  return proxies::sample_skin(mesh.positions, mesh.triangles, count, keep);
+}
+
 } // namespace
 
-ProxyMeasure::ProxyMeasure(const rig::Mesh& mesh, int samples)
-    : mesh_(&mesh), samples_(proxies::sample_skin(mesh.positions, mesh.triangles, samples)) {
+ProxyMeasure::ProxyMeasure(const rig::Mesh& mesh, int samples) : mesh_(&mesh), samples_(samples_of(mesh, samples)) {
   pose(mesh.positions);
 }
 

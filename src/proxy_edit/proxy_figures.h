@@ -29,7 +29,8 @@ class ProxyMeasure {
 public:
   static constexpr int k_samples = 4000;
 
-  /// The mesh must outlive it.
+  /// The mesh must outlive it. Skin that nobody sees, inside the body as it is bound, gets no samples; where the mesh
+  /// has no sides (BodyMesh) all of it counts.
   explicit ProxyMeasure(const rig::Mesh& mesh, int samples = k_samples);
 
   void pose(std::span<const Vec3f> positions); ///< of all vertices, world, m

@@ -1,7 +1,7 @@
 // The real-time window.
 #pragma once
 
-#include "src/viewer/player.h"
+#include "src/viewer/window_mode.h"
 
 #include <filesystem>
 #include <optional>
@@ -19,6 +19,7 @@ struct ViewerOptions {
   std::optional<int> max_frames = {};   ///< closes by itself after that many drawn frames, for tests
   std::filesystem::path pictures = "."; ///< folder of screenshots and films
   std::vector<std::string> recent = {}; ///< files that the menu offers to open
+  WindowMode* mode = nullptr;           ///< what the key M switches to
   std::string message = {};             ///< shown until something is played: what went wrong with the last file
 };
 
