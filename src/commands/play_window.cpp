@@ -103,11 +103,12 @@ int play_in_window(const PlayOptions& options, Draped first, std::optional<Drape
     } else {
       ScenePlayer player(first.scene, first.start, frames);
       set_up(player, options, why, frames);
-      ProxyEditMode edit(first.scene, player, draped_start);
+      ProxyEditMode edit(first.scene, player, first.start, draped_start);
       edit.set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
       viewer.mode = &edit;
       end = run_viewer(player, viewer);
       viewer.mode = nullptr;
+      first.start = edit.start();
       stopped = player.message();
       json = json_of(player, end);
       json["proxy_edit"] = edit.editor().json();

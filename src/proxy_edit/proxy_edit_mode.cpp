@@ -21,8 +21,8 @@ CapsuleView drawn(const proxies::Capsule& shape, const Colour& colour) {
 
 } // namespace
 
-ProxyEditMode::ProxyEditMode(Scene& scene, ScenePlayer& player, Drape drape)
-    : scene_(&scene), player_(&player), drape_(std::move(drape)),
+ProxyEditMode::ProxyEditMode(Scene& scene, ScenePlayer& player, Start start, Drape drape)
+    : scene_(&scene), player_(&player), start_(std::move(start)), drape_(std::move(drape)),
       editor_(scene.character, scene.proxies, proxies_file(scene)), played_(scene.proxies) {}
 
 void ProxyEditMode::toggle() {
@@ -33,7 +33,6 @@ void ProxyEditMode::toggle() {
   }
   on_ = !on_;
   frame_ = -1;
-  note_.clear();
 }
 
 void ProxyEditMode::restart() {
@@ -41,14 +40,14 @@ void ProxyEditMode::restart() {
   Scene& scene = *scene_;
   player_->stop();
   scene.proxies = editor_.state().proxies;
-  auto start = drape_(scene);
-  if (!start) { // as it was: that did settle
+  if (auto start = drape_(scene)) {
+    played_ = scene.proxies;
+    start_ = std::move(*start);
+  } else {
     note_ = "the garments do not settle on these proxies; the simulation goes on with those before";
     scene.proxies = played_;
-    start = drape_(scene);
   }
-  played_ = scene.proxies;
-  player_->restart(start.value_or(std::vector<std::vector<Vec3>>()));
+  player_->restart(start_);
   frame_ = -1;
 }
 
@@ -68,7 +67,7 @@ Layers ProxyEditMode::layers(Layers chosen) const {
 
 void ProxyEditMode::show(std::vector<FrameView>& views) {
   if (editor_.take_restart()) {
-    note_ = "restarted with these proxies";
+    note_ = "restarted with these proxies"; // unless it says otherwise
     restart();
   }
   follow_pose();

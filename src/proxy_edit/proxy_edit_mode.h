@@ -12,13 +12,15 @@ namespace tutu::app {
 class ProxyEditMode : public WindowMode {
 public:
   /// Garments settled on the scene as it is; none when they do not settle.
-  using Drape = std::function<std::optional<std::vector<std::vector<Vec3>>>(const Scene&)>;
+  using Start = std::vector<std::vector<Vec3>>; ///< [garment] positions
+  using Drape = std::function<std::optional<Start>(const Scene&)>;
 
-  /// `scene`: the player's. Both must outlive it.
-  ProxyEditMode(Scene& scene, ScenePlayer& player, Drape drape);
+  /// `scene`: the player's, and `start` what it plays from. Both must outlive it.
+  ProxyEditMode(Scene& scene, ScenePlayer& player, Start start, Drape drape);
 
   void set_error_scale(const ErrorScale& scale) { scale_ = scale; }
   const ProxyEditor& editor() const { return editor_; }
+  const Start& start() const { return start_; } ///< of the scene as it is played
 
   bool on() const override { return on_; }
   void toggle() override;
@@ -40,6 +42,7 @@ private:
 
   Scene* scene_;
   ScenePlayer* player_;
+  Start start_;
   Drape drape_;
   ProxyEditor editor_;
   std::vector<proxies::Proxy> played_; ///< what the scene has

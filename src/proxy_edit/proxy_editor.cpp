@@ -50,15 +50,14 @@ std::span<const ProxyCommandEntry> proxy_command_table() { return k_table; }
 
 ProxyEditor::ProxyEditor(const rig::Character& character, std::vector<Proxy> proxies, std::filesystem::path file)
     : character_(&character), rest_(rig::rest_model(character.skeleton)), world_from_joint_(rest_),
-      positions_(character.mesh.positions), file_(std::move(file)), document_(std::move(proxies)),
-      measure_(character.mesh) {}
+      positions_(character.mesh.positions), file_(std::move(file)), document_(std::move(proxies)) {}
 
 void ProxyEditor::set_pose(std::span<const Transform> world_from_joint, std::span<const Vec3f> positions) {
   hold_.reset();
   document_.drop();
   world_from_joint_.assign(world_from_joint.begin(), world_from_joint.end());
   positions_.assign(positions.begin(), positions.end());
-  measure_.pose(positions_);
+  if (measure_) measure_->pose(positions_);
   figures_.reset();
 }
 
@@ -131,8 +130,16 @@ std::vector<Handle> ProxyEditor::handles() const {
 
 std::optional<HandleKind> ProxyEditor::held() const { return hold_ ? std::optional(hold_->kind) : std::nullopt; }
 
+const ProxyMeasure& ProxyEditor::measure() {
+  if (!measure_) {
+    measure_.emplace(character_->mesh);
+    measure_->pose(positions_);
+  }
+  return *measure_;
+}
+
 const ProxyMeasure::Result& ProxyEditor::figures() {
-  if (!figures_) figures_ = measure_.measure(enabled_shapes(), enabled_index().value_or(-1));
+  if (!figures_) figures_ = measure().measure(enabled_shapes(), enabled_index().value_or(-1));
   return *figures_;
 }
 
@@ -214,7 +221,7 @@ void ProxyEditor::fit() {
   const Proxy& proxy = *selected();
   const double before = figures().whole.rms;
   const std::vector<Capsule> shapes = enabled_shapes();
-  const Capsule fitted = fit_one(measure_.spots(), shapes, *enabled_index(), proxy.kind == ProxyKind::sphere);
+  const Capsule fitted = fit_one(measure().spots(), shapes, *enabled_index(), proxy.kind == ProxyKind::sphere);
   const auto placed = proxy_at(proxy, fitted, pose());
   if (!placed) {
     message_ = "not fitted: in this pose its joints are turned too far apart to move it";

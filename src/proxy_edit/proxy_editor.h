@@ -81,6 +81,7 @@ public:
 
 private:
   Vec3 view_direction() const;
+  const ProxyMeasure& measure();
   void change(std::vector<proxies::Proxy> proxies, std::optional<int> selected);
   void add(proxies::ProxyKind kind);
   void fit();
@@ -92,7 +93,7 @@ private:
   std::vector<Vec3f> positions_;
   std::filesystem::path file_;
   ProxyDocument document_;
-  ProxyMeasure measure_;
+  std::optional<ProxyMeasure> measure_;         ///< once it is asked for: who only plays does not wait for it
   std::optional<ProxyMeasure::Result> figures_; ///< none: stale
   Picture picture_;
   float pixel_scale_ = 1.0f;
