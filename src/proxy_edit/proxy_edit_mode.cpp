@@ -29,14 +29,13 @@ void ProxyEditMode::toggle() {
   if (on_) {
     editor_.release();
     holds_ = false;
-    restart();
+    if (!same_proxies(played_, editor_.state().proxies)) restart();
   }
   on_ = !on_;
   frame_ = -1;
 }
 
 void ProxyEditMode::restart() {
-  if (same_proxies(played_, editor_.state().proxies)) return;
   Scene& scene = *scene_;
   player_->stop();
   scene.proxies = editor_.state().proxies;
@@ -68,7 +67,8 @@ Layers ProxyEditMode::layers(Layers chosen) const {
 void ProxyEditMode::show(std::vector<FrameView>& views) {
   if (editor_.take_restart()) {
     note_ = "restarted with these proxies"; // unless it says otherwise
-    restart();
+    if (same_proxies(played_, editor_.state().proxies)) player_->rewind();
+    else restart();
   }
   follow_pose();
   FrameView& view = views.front();
