@@ -3,6 +3,7 @@
 #include "rig/file_io.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
+#include "src/proxy_edit/proxy_edit_mode.h"
 #include "src/scene/split_player.h"
 #include "src/viewer/recent_files.h"
 #include "src/viewer/viewer.h"
@@ -103,9 +104,15 @@ int play_in_window(const PlayOptions& options, Draped first, std::optional<Drape
     } else {
       ScenePlayer player(first.scene, first.start, frames);
       set_up(player, options, why, frames);
+      ProxyEditMode edit(first.scene, player, first.start, draped_start);
+      edit.set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
+      viewer.mode = &edit;
       end = run_viewer(player, viewer);
+      viewer.mode = nullptr;
+      first.start = edit.start();
       stopped = player.message();
       json = json_of(player, end);
+      json["proxy_edit"] = edit.editor().json();
     }
     if (!options.json.empty()) write_file(options.json, json.dump(2) + "\n");
     if (!stopped.empty()) fmt::print(stderr, "tutu: {}\n", stopped);

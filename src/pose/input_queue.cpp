@@ -11,25 +11,31 @@ bool is_down(GLFWwindow* window, int left, int right) {
   return glfwGetKey(window, left) == GLFW_PRESS || glfwGetKey(window, right) == GLFW_PRESS;
 }
 
-/// An event here and now.
+InputQueue& queue_of(GLFWwindow* window) { return *static_cast<InputQueue*>(glfwGetWindowUserPointer(window)); }
+
+/// An event where the pointer was then.
 InputEvent event_at_pointer(GLFWwindow* window, InputEvent::Kind kind) {
   InputEvent event;
   event.kind = kind;
   int width = 1, height = 1, pixels_wide = 1, pixels_high = 1;
   glfwGetWindowSize(window, &width, &height);
   glfwGetFramebufferSize(window, &pixels_wide, &pixels_high);
-  glfwGetCursorPos(window, &event.x, &event.y);
-  event.x = (event.x + 0.5) * pixels_wide / std::max(width, 1);
-  event.y = (event.y + 0.5) * pixels_high / std::max(height, 1);
+  const InputQueue& queue = queue_of(window);
+  event.x = (queue.pointer_x + 0.5) * pixels_wide / std::max(width, 1);
+  event.y = (queue.pointer_y + 0.5) * pixels_high / std::max(height, 1);
   event.shift = is_down(window, GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT);
   return event;
 }
 
-void add(GLFWwindow* window, InputEvent event) {
-  static_cast<InputQueue*>(glfwGetWindowUserPointer(window))->add(std::move(event));
-}
+void add(GLFWwindow* window, InputEvent event) { queue_of(window).add(std::move(event)); }
 
-void note_move(GLFWwindow* window, double, double) { add(window, event_at_pointer(window, InputEvent::Kind::move)); }
+void note_shift(GLFWwindow* window) { add(window, event_at_pointer(window, InputEvent::Kind::move)); }
+
+void note_move(GLFWwindow* window, double x, double y) {
+  queue_of(window).pointer_x = x;
+  queue_of(window).pointer_y = y;
+  add(window, event_at_pointer(window, InputEvent::Kind::move));
+}
 
 void note_button(GLFWwindow* window, int button, int action, int) {
   InputEvent event =
@@ -64,7 +70,7 @@ std::string name_of_key(int key, int scancode) {
 }
 
 void note_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
-  if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) return note_move(window, 0, 0);
+  if (key == GLFW_KEY_LEFT_SHIFT || key == GLFW_KEY_RIGHT_SHIFT) return note_shift(window);
   if (action == GLFW_RELEASE) return;
   std::string name = name_of_key(key, scancode);
   const bool with_control = (mods & GLFW_MOD_CONTROL) != 0;
@@ -85,6 +91,7 @@ void note_character(GLFWwindow* window, unsigned character) {
 
 InputQueue::InputQueue(GLFWwindow* window) {
   glfwSetWindowUserPointer(window, this);
+  glfwGetCursorPos(window, &pointer_x, &pointer_y);
   glfwSetCursorPosCallback(window, note_move);
   glfwSetMouseButtonCallback(window, note_button);
   glfwSetScrollCallback(window, note_wheel);

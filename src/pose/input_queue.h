@@ -33,6 +33,9 @@ public:
   std::vector<InputEvent> take();
   void add(InputEvent event) { events_.push_back(std::move(event)); }
 
+  /// Where the last move went, in the window's own units: asked now, the system tells where the pointer is by now.
+  double pointer_x = 0.0, pointer_y = 0.0;
+
 private:
   std::vector<InputEvent> events_;
 };

@@ -16,58 +16,77 @@ constexpr int k_history = 240; // frames of the plot
 } // namespace
 
 ScenePlayer::ScenePlayer(const Scene& scene, std::vector<std::vector<Vec3>> start, int frames)
-    : scene_(&scene), frames_(frames), simulation_(scene, std::move(start), k_recording_bytes), view_(scene),
+    : scene_(&scene), frames_(frames),
+      simulation_(std::make_unique<Simulation>(scene, std::move(start), k_recording_bytes)), view_(scene),
       palette_(scene.character.skin.slot_count()), body_positions_(scene.character.mesh.positions.size()),
       body_normals_(scene.character.mesh.positions.size()) {
-  simulation_.wait_for(0);
-  shown_ = simulation_.frame(0);
+  simulation_->wait_for(0);
+  shown_ = simulation_->frame(0);
   go(0);
+}
+
+void ScenePlayer::restart(std::vector<std::vector<Vec3>> start) {
+  simulation_ = std::make_unique<Simulation>(*scene_, std::move(start), k_recording_bytes);
+  picked_.reset();
+  picked_proxy_.reset();
+  forget_first_wrong();
+  worst_time_.reset();
+  skinned_ = -1;
+  target_ = 0;
+  simulation_->wait_for(0);
+  shown_ = simulation_->frame(0);
+  go(0);
+}
+
+SkinView ScenePlayer::shown_skin() {
+  skin();
+  return {body_positions_, body_normals_};
 }
 
 void ScenePlayer::update() {
   if (shown_->index == target_) return;
-  const Simulation::Extent extent = simulation_.extent();
+  const Simulation::Extent extent = simulation_->extent();
   if (extent.last < extent.first) return;
   if (extent.failed) target_ = std::min(target_, extent.last);
   target_ = std::max(target_, extent.first);
-  if (auto frame = simulation_.frame(std::min(target_, extent.last))) shown_ = std::move(frame);
+  if (auto frame = simulation_->frame(std::min(target_, extent.last))) shown_ = std::move(frame);
 }
 
 void ScenePlayer::show(int index) {
-  if (auto frame = simulation_.frame(index)) shown_ = std::move(frame);
+  if (auto frame = simulation_->frame(index)) shown_ = std::move(frame);
 }
 
 void ScenePlayer::go(int frames) {
   target_ = std::clamp(target_ + frames, 0, frames_);
-  simulation_.run_until(std::min(target_ + k_ahead, frames_));
+  simulation_->run_until(std::min(target_ + k_ahead, frames_));
   update();
 }
 
 void ScenePlayer::rewind() {
   target_ = 0;
-  if (simulation_.extent().has(0)) go(0);
+  if (simulation_->extent().has(0)) go(0);
   else jump();
 }
 
 void ScenePlayer::seek(double time) {
   target_ = std::clamp(static_cast<int>(std::lround(time / frame_seconds())), 0, frames_);
-  const Simulation::Extent extent = simulation_.extent();
+  const Simulation::Extent extent = simulation_->extent();
   if (!extent.has(target_) && target_ != extent.last + 1) jump();
   go(0);
 }
 
 void ScenePlayer::jump() {
-  simulation_.jump(target_);
+  simulation_->jump(target_);
   forget_first_wrong();
 }
 
 bool ScenePlayer::at_end() const {
-  const Simulation::Extent extent = simulation_.extent();
+  const Simulation::Extent extent = simulation_->extent();
   return shown_->index >= frames_ || (extent.failed && shown_->index >= extent.last);
 }
 
 std::string ScenePlayer::recorded() const {
-  const Simulation::Extent extent = simulation_.extent();
+  const Simulation::Extent extent = simulation_->extent();
   if (extent.last < extent.first) return "";
   return fmt::format("recorded {} to {}, {} of {} MB", extent.first, extent.last, extent.bytes >> 20,
                      k_recording_bytes >> 20);
@@ -81,7 +100,7 @@ std::vector<StageTime> ScenePlayer::stage_times() const {
 std::vector<float> ScenePlayer::history() const {
   std::vector<float> ms;
   for (int index = shown_->index - k_history + 1; index <= shown_->index; ++index)
-    if (const auto frame = simulation_.frame(index)) ms.push_back(static_cast<float>(frame->times.total()));
+    if (const auto frame = simulation_->frame(index)) ms.push_back(static_cast<float>(frame->times.total()));
   return ms;
 }
 
@@ -211,10 +230,10 @@ std::optional<WhyProxy> ScenePlayer::why_proxy() const {
 
 std::optional<Why> ScenePlayer::why_shown() {
   if (!picked_) return std::nullopt;
-  const auto before = simulation_.frame(shown_->index - 1);
+  const auto before = simulation_->frame(shown_->index - 1);
   Why why = explain(*scene_, picked_->garment, picked_->particle, *shown_, before.get());
   for (; looked_at_ < shown_->index && !first_wrong_; ++looked_at_)
-    if (const auto frame = simulation_.frame(looked_at_ + 1))
+    if (const auto frame = simulation_->frame(looked_at_ + 1))
       first_wrong_ = wrong_in(*scene_, picked_->garment, picked_->particle, *frame);
   if (first_wrong_ && first_wrong_->frame <= shown_->index) why.first_wrong = first_wrong_;
   return why;

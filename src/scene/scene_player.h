@@ -6,6 +6,8 @@
 #include "src/scene/why.h"
 #include "src/viewer/player.h"
 
+#include <memory>
+
 namespace tutu::app {
 
 /// Memory of recorded frames: 4000 of the dance's, more than a minute.
@@ -28,7 +30,7 @@ public:
   double time() const override { return shown_->time; }
   double duration() const override { return frames_ * frame_seconds(); }
   std::string title() const override { return scene_->name(); }
-  std::string message() const override { return simulation_.message(); }
+  std::string message() const override { return simulation_->message(); }
   std::string recorded() const override;
   std::vector<StageTime> stage_times() const override;
   std::vector<float> history() const override;
@@ -41,6 +43,11 @@ public:
 
   const Scene& scene() const { return *scene_; }
   const FrameState& shown() const { return *shown_; }
+  /// Ends the simulation, so that the scene may change: its proxies only. Nothing but restart() may be called then.
+  void stop() { simulation_.reset(); }
+  void restart(std::vector<std::vector<Vec3>> start); ///< the scene as it is now, from that draped start
+  SkinView shown_skin();                              ///< good until another frame is shown
+
   void update();                        ///< shows what was asked for, as far as it is there
   void show(int index);                 ///< this frame for now, where it is recorded
   FrameView draw(const Layers& layers); ///< what is shown
@@ -48,7 +55,7 @@ public:
   void compare_with(const FrameState& other) { other_ = other; }
   void pick_as(const ScenePlayer& other); ///< the same particle, where there is one
 
-  Simulation::Extent extent() const { return simulation_.extent(); }
+  Simulation::Extent extent() const { return simulation_->extent(); }
   /// Of the particle that is picked, at the frame that is shown, back to the start of what is recorded.
   std::optional<Why> why_shown();
   std::optional<WhyProxy> why_proxy() const; ///< of the proxy that is picked
@@ -63,7 +70,7 @@ private:
 
   const Scene* scene_;
   int frames_;
-  Simulation simulation_;
+  std::unique_ptr<Simulation> simulation_;
   int target_ = 0; ///< the frame that is asked for; shown as soon as it is there
   Recording::Frame shown_;
   SceneView view_;

@@ -28,6 +28,7 @@ constexpr std::array k_commands = {
     ViewerCommand{"Run", "loop or stop at the end", "L", 'l', 0, [](ViewerState& s) { s.loop = !s.loop; }},
     ViewerCommand{"Run", "where the skin leaves the proxies most", "J", 'j', 0,
                   [](ViewerState& s) { s.seek_worst = true; }},
+    ViewerCommand{"Edit", "edit the proxies, or play on", "M", 'm', 0, [](ViewerState& s) { s.toggle_mode = true; }},
     ViewerCommand{"View", "camera as at the start", "R", 'r', 0, [](ViewerState& s) { s.reset_camera = true; }},
     ViewerCommand{"View", "panels", "Tab", 0, GLFW_KEY_TAB, [](ViewerState& s) { s.panels = !s.panels; }},
     ViewerCommand{"View", "help", "?", '?', 0, [](ViewerState& s) { s.help = !s.help; }},

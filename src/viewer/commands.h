@@ -16,14 +16,16 @@ struct ViewerState {
   OrbitCamera orbit;
   Layers layers;
   bool playing = true, loop = true, help = false, panels = true;
+  bool in_mode = false; ///< the window is used in another way (WindowMode): its panels take the place of the figures
   float time_scale = 1;
   // What the user has asked for since the last frame; run_viewer does it and clears it.
   int steps = 0; ///< frames on or back
   bool rewind = false, reset_camera = false, quit = false, seek_worst = false;
-  bool screenshot = false, toggle_film = false, browse = false;
+  bool screenshot = false, toggle_film = false, browse = false, toggle_mode = false;
   std::optional<double> seek;           ///< s
   std::optional<Eigen::Vector2f> click; ///< on the picture, pixels from its upper left corner
   std::optional<std::string> open;      ///< a file
+  std::optional<std::string> open_then; ///< the file, once the mode is asked whether it may close
   std::string note;                     ///< what was last done, for the user
 };
 

@@ -28,7 +28,7 @@ constexpr std::array<std::array<const char*, 2>, 5> k_mouse = {{{"drag", "turn"}
 
 void draw_menus(std::span<const std::string> recent, ViewerState& state) {
   if (!ImGui::BeginMainMenuBar()) return;
-  for (const char* menu : {"File", "Run", "View"}) {
+  for (const char* menu : {"File", "Edit", "Run", "View"}) {
     if (!ImGui::BeginMenu(menu)) continue;
     const std::string_view name = menu;
     if (name == "File" && !recent.empty() && ImGui::BeginMenu("open again")) {
@@ -236,6 +236,28 @@ void draw_help() {
   ImGui::End();
 }
 
+/// The scene's name and its layers.
+void draw_scene(const Player& player, ViewerState& state, float top) {
+  ImGui::SetNextWindowPos({k_margin, top});
+  ImGui::Begin("scene", nullptr, k_panel_flags);
+  ImGui::TextUnformatted(player.title().c_str());
+  ImGui::Separator();
+  draw_layers(state);
+  if (ImGui::SmallButton(state.help ? "hide help" : "help (?)")) state.help = !state.help;
+  ImGui::End();
+}
+
+/// Times and figures; returns where there is room below them, px.
+float draw_measures(Player& player, const SmoothTimes& times, const ImVec2& corner) {
+  ImGui::SetNextWindowPos(corner, ImGuiCond_Always, {1, 0});
+  ImGui::Begin("times", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
+  draw_times(times);
+  draw_figures(player);
+  const float below = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + k_margin;
+  ImGui::End();
+  return below;
+}
+
 void draw_captions(std::span<const FrameView> views) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const float part = screen.x / static_cast<float>(views.size());
@@ -286,10 +308,10 @@ void set_panel_style(float scale) {
   ImGui::GetIO().Fonts->AddFontDefault(&font);
 }
 
-void read_input(ViewerState& state) {
+void read_input(ViewerState& state, bool with_mouse) {
   const ImGuiIO& io = ImGui::GetIO();
   const int height = static_cast<int>(io.DisplaySize.y);
-  if (!io.WantCaptureMouse) {
+  if (!io.WantCaptureMouse && with_mouse) {
     const bool aside = io.MouseDown[2] || (io.MouseDown[0] && io.KeyShift);
     if (aside) pan(state.orbit, io.MouseDelta.x, io.MouseDelta.y, height);
     else if (io.MouseDown[0]) rotate(state.orbit, io.MouseDelta.x, io.MouseDelta.y, height);
@@ -308,22 +330,11 @@ void draw_panels(Player& player, const SmoothTimes& times, std::span<const Frame
   const FrameView& view = views.back(); // its legend says more where there are two
   draw_menus(recent, state);
   const float top = ImGui::GetFrameHeight() + k_margin, right = ImGui::GetIO().DisplaySize.x - k_margin;
-  ImGui::SetNextWindowPos({k_margin, top});
-  ImGui::Begin("scene", nullptr, k_panel_flags);
-  ImGui::TextUnformatted(player.title().c_str());
-  ImGui::Separator();
-  draw_layers(state);
-  if (ImGui::SmallButton(state.help ? "hide help" : "help (?)")) state.help = !state.help;
-  ImGui::End();
-
-  ImGui::SetNextWindowPos({right, top}, ImGuiCond_Always, {1, 0});
-  ImGui::Begin("times", nullptr, k_panel_flags | ImGuiWindowFlags_NoInputs);
-  draw_times(times);
-  draw_figures(player);
-  const float below = ImGui::GetWindowPos().y + ImGui::GetWindowSize().y + k_margin;
-  ImGui::End();
-
-  draw_why(player.why(), below);
+  if (!state.in_mode) {
+    draw_scene(player, state, top);
+    const float below = draw_measures(player, times, {right, top});
+    draw_why(player.why(), below);
+  }
   draw_legend_panel(view.legend);
   draw_transport(player, state);
   draw_captions(views);

@@ -21,9 +21,9 @@ private:
 /// The look of the panels, once after ImGui has begun. `scale`: of the display, 1 = 96 dpi.
 void set_panel_style(float scale);
 
-/// Characters and mouse of this frame, as far as no panel wants them. Between ImGui::NewFrame and Render.
-/// Keys without a character (Home, Esc) come by run_viewer's own callback.
-void read_input(ViewerState& state);
+/// Characters and mouse of this frame, as far as no panel wants them. `with_mouse`: false leaves it to a mode. Between
+/// ImGui::NewFrame and Render. Keys without a character (Home, Esc) come by run_viewer's own callback.
+void read_input(ViewerState& state, bool with_mouse);
 
 /// All panels; with a scale also the bar of the error overlay. `recent`: files to offer. Between ImGui::NewFrame and
 /// Render.

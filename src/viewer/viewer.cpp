@@ -14,8 +14,10 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <imgui.h>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace tutu::app {
 namespace {
@@ -24,15 +26,37 @@ constexpr double k_longest_pause = 0.25; // s; a window that was dragged or hidd
 constexpr int k_most_steps = 60;         // a drawn frame, to catch up: all that the pause can owe
 constexpr double k_idle_wait = 0.05;     // s between pictures while nothing plays
 constexpr float k_start_yaw = 0.35f, k_start_pitch = 0.08f;
+constexpr char32_t k_mode_key = 'm';
 constexpr float k_click = 8; // px around the pointer that a click finds
 
 /// What the importer and the scene reader take.
 constexpr std::array<std::string_view, 6> k_openable = {".json", ".dae", ".gltf", ".glb", ".fbx", ".x"};
 
-ViewerState& state_of(GLFWwindow* window) { return *static_cast<ViewerState*>(glfwGetWindowUserPointer(window)); }
+/// The events, which a mode takes in order, and what the keys did to the state.
+struct Heard : InputQueue {
+  explicit Heard(GLFWwindow* window) : InputQueue(window) {}
+  /// Without the character: nothing. Whether it was there.
+  bool keep_what_follows(char32_t character) {
+    const std::vector<InputEvent> events = take();
+    bool follows = false;
+    for (const InputEvent& event : events) {
+      if (follows) add(event);
+      follows = follows || (event.kind == InputEvent::Kind::character && event.character == character);
+    }
+    return follows;
+  }
+  ViewerState state;
+  GLFWkeyfun events_key = nullptr; ///< the queue's own
+};
+
+Heard& heard_in(GLFWwindow* window) {
+  return static_cast<Heard&>(*static_cast<InputQueue*>(glfwGetWindowUserPointer(window)));
+}
+ViewerState& state_of(GLFWwindow* window) { return heard_in(window).state; }
 
 /// For keys that write nothing. By callback, since a key that is hit between two slow pictures is up again when asked.
-void note_key(GLFWwindow* window, int key, int, int action, int) {
+void note_key(GLFWwindow* window, int key, int scancode, int action, int mods) {
+  heard_in(window).events_key(window, key, scancode, action, mods);
   const bool goes_on = key == GLFW_KEY_LEFT || key == GLFW_KEY_RIGHT; // as long as it is held
   if (action == GLFW_PRESS || (action == GLFW_REPEAT && goes_on)) apply_key(key, state_of(window));
 }
@@ -114,14 +138,52 @@ void pick(Player& player, const ViewerState& state, GLFWwindow* window, std::siz
   player.pick({camera.eye, ray_through(camera, each, height, pixel), k_click * metres_per_pixel});
 }
 
+/// Whether the window is to close. A mode with work that is not saved asks before.
+bool wants_to_end(GLFWwindow* window, WindowMode* mode, ViewerState& state) {
+  if (mode && mode->is_closing()) {
+    if (!state.open) state.open = state.open_then;
+    return true;
+  }
+  if (!glfwWindowShouldClose(window) && !state.quit && !state.open) return false;
+  if (!mode || mode->may_close()) return true;
+  glfwSetWindowShouldClose(window, GLFW_FALSE);
+  state.quit = false;
+  state.open_then = std::exchange(state.open, std::nullopt);
+  return false;
+}
+
+void switch_mode(WindowMode* mode, ViewerState& state) {
+  if (state.toggle_mode && mode && !mode->asks()) mode->toggle();
+  else if (state.toggle_mode && !mode) state.note = "two scenes side by side are not edited";
+  state.toggle_mode = false;
+  state.in_mode = mode && mode->on();
+}
+
+/// The events since the last picture, then what the mode shows.
+void let_mode_work(WindowMode& mode, Heard& heard, GLFWwindow* window, std::vector<FrameView>& views) {
+  int width = 0, height = 0;
+  float scale = 1, ignored = 1;
+  glfwGetFramebufferSize(window, &width, &height);
+  glfwGetWindowContentScale(window, &scale, &ignored);
+  const ImGuiIO& io = ImGui::GetIO();
+  if (mode.asks()) heard.state.quit = false; // Esc takes the question back
+  for (const InputEvent& event : heard.take()) {
+    mode.set_picture(heard.state.orbit.camera(), width, height, scale);
+    const bool by_key = event.kind == InputEvent::Kind::key || event.kind == InputEvent::Kind::character;
+    mode.take(event, by_key ? io.WantTextInput : io.WantCaptureMouse, heard.state.orbit);
+  }
+  mode.set_picture(heard.state.orbit.camera(), width, height, scale);
+  mode.show(views);
+}
+
 } // namespace
 
 ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
   const GlfwSession glfw;
   const Window window(options.width, options.height, "tutu - " + player.title());
-  ViewerState state;
-  glfwSetWindowUserPointer(window.handle(), &state);
-  glfwSetKeyCallback(window.handle(), note_key); // before ImGui's, which then calls it
+  Heard heard(window.handle());
+  ViewerState& state = heard.state;
+  heard.events_key = glfwSetKeyCallback(window.handle(), note_key); // before ImGui's, which then calls it
   glfwSetDropCallback(window.handle(), note_drop);
   const ImGuiSession imgui(window.handle());
   Renderer renderer;
@@ -139,10 +201,9 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
   Pacing pacing;
   SmoothTimes times;
   double last = glfwGetTime(), filmed = -1;
-  for (int frame = 0; !glfwWindowShouldClose(window.handle()) && !interrupted() && !state.quit && !state.open;
-       ++frame) {
+  for (int frame = 0; !interrupted() && !wants_to_end(window.handle(), options.mode, state); ++frame) {
     if (options.max_frames && frame >= *options.max_frames) break;
-    if (options.close_at_end && frame > 0 && player.at_end()) break;
+    if (options.close_at_end && frame > 0 && player.at_end() && !state.in_mode) break;
     if (state.playing || player.behind() || options.max_frames) glfwPollEvents();
     else glfwWaitEventsTimeout(k_idle_wait);
     int width = 0, height = 0;
@@ -151,9 +212,11 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
     // What was typed counts before anything is drawn: a picture that is asked for shows what the keys before it did.
     if (!minimised) {
       imgui.begin_frame();
-      read_input(state);
+      const bool others_mouse = state.in_mode || heard.keep_what_follows(k_mode_key);
+      read_input(state, !others_mouse);
     }
     const double now = glfwGetTime();
+    if (state.in_mode) state.playing = false;
     advance(player, state, pacing, now - last, pictures.filming());
     last = now;
     if (minimised) {
@@ -161,15 +224,17 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
       continue;
     }
     const double draw_start = glfwGetTime();
-    const std::vector<FrameView> views = player.views(state.layers);
+    std::vector<FrameView> views = player.views(state.in_mode ? options.mode->layers(state.layers) : state.layers);
     if (state.reset_camera) {
       const auto [left, each] = part_of(width, 0, views.size());
       state.orbit = whole_view(views.front(), static_cast<float>(each) / static_cast<float>(height));
     }
     state.reset_camera = false;
+    if (state.in_mode) let_mode_work(*options.mode, heard, window.handle(), views);
     if (state.click) pick(player, state, window.handle(), views.size());
     state.click.reset();
     draw_panels(player, times, views, options.recent, state);
+    if (state.in_mode) options.mode->draw_panels(state.panels ? ImGui::GetFrameHeight() : 0.0f, state.panels);
     if (state.browse) dialog.open();
     state.browse = false;
     if (dialog.is_open() && state.quit) { // Esc leaves the dialog first
@@ -197,6 +262,7 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
     if (pictures.filming() && player.time() != filmed) state.note = pictures.add(read_window(width, height));
     filmed = player.time();
     glfwSwapBuffers(window.handle());
+    switch_mode(options.mode, state); // before the window may close
   }
   if (pictures.filming()) pictures.toggle_film(0, 0, 1.0);
   return {state.layers, state.playing, state.time_scale, state.open};

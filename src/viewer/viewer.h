@@ -1,7 +1,7 @@
 // The real-time window.
 #pragma once
 
-#include "src/viewer/player.h"
+#include "src/viewer/window_mode.h"
 
 #include <filesystem>
 #include <optional>
@@ -20,6 +20,7 @@ struct ViewerOptions {
   std::filesystem::path browse = ".";   ///< folder in which a file to open is looked for first
   std::filesystem::path pictures = "."; ///< folder of screenshots and films
   std::vector<std::string> recent = {}; ///< files that the menu offers to open
+  WindowMode* mode = nullptr;           ///< what the key M switches to
   std::string message = {};             ///< shown until something is played: what went wrong with the last file
 };
 
