@@ -29,6 +29,8 @@ nlohmann::json json_of(ScenePlayer& player, const ViewerEnd& end) {
                          {"deepest_mm", 1000.0 * figures.deepest},
                          {"playing", end.playing},
                          {"time_scale", end.time_scale},
+                         {"pictures", end.pictures},
+                         {"drawing_ms", end.drawing_ms},
                          {"recorded", {{"first", player.extent().first}, {"last", player.extent().last}}},
                          {"layers", nlohmann::json::array()},
                          {"why", nullptr}};

@@ -200,6 +200,7 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
   state.reset_camera = true;
   Pacing pacing;
   SmoothTimes times;
+  int drawn = 0;
   double last = glfwGetTime(), filmed = -1;
   for (int frame = 0; !interrupted() && !wants_to_end(window.handle(), options.mode, state); ++frame) {
     if (options.max_frames && frame >= *options.max_frames) break;
@@ -252,6 +253,7 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
     imgui.draw();
     glFinish(); // so that the time below is the drawing's, not that of waiting for the display
     times.add(player.stage_times(), 1e3 * (glfwGetTime() - draw_start));
+    ++drawn;
     if (state.screenshot && !player.behind()) {
       const int index = static_cast<int>(std::lround(player.time() / player.frame_seconds()));
       state.note = pictures.screenshot(read_window(width, height), index);
@@ -265,7 +267,7 @@ ViewerEnd run_viewer(Player& player, const ViewerOptions& options) {
     switch_mode(options.mode, state); // before the window may close
   }
   if (pictures.filming()) pictures.toggle_film(0, 0, 1.0);
-  return {state.layers, state.playing, state.time_scale, state.open};
+  return {state.layers, state.playing, state.time_scale, drawn, times.draw(), state.open};
 }
 
 } // namespace tutu::app

@@ -29,6 +29,8 @@ struct ViewerEnd {
   Layers layers;
   bool playing = false;
   double time_scale = 1;
+  int pictures = 0;                ///< drawn
+  double drawing_ms = 0.0;         ///< a picture, smoothed, panels included, without waiting for the display
   std::optional<std::string> open; ///< a file that was dropped on the window or chosen: what to play next
 };
 
