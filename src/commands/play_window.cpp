@@ -37,6 +37,7 @@ nlohmann::json json_of(ScenePlayer& player, const ViewerEnd& end) {
   for (const LayerInfo& layer : k_layers)
     if (end.layers.*layer.member) json["layers"].push_back(layer.name);
   if (const auto why = player.why_shown()) json["why"] = json_of(*why);
+  if (const auto why = player.why_edge()) json["why_edge"] = json_of(*why);
   if (const auto why = player.why_proxy()) json["why_proxy"] = json_of(*why);
   return json;
 }

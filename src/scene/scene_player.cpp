@@ -28,6 +28,7 @@ ScenePlayer::ScenePlayer(const Scene& scene, std::vector<std::vector<Vec3>> star
 void ScenePlayer::restart(std::vector<std::vector<Vec3>> start) {
   simulation_ = std::make_unique<Simulation>(*scene_, std::move(start), k_recording_bytes);
   picked_.reset();
+  picked_edge_.reset();
   picked_proxy_.reset();
   forget_first_wrong();
   worst_time_.reset();
@@ -153,22 +154,26 @@ FrameView ScenePlayer::draw(const Layers& layers) {
 void ScenePlayer::add_picked(FrameView& view) {
   const cloth::Garment& garment = scene_->garments[picked_->garment];
   const std::vector<Vec3>& positions = shown_->garments[picked_->garment].positions;
-  for (const cloth::Spring& spring : garment.springs) {
-    if (spring.i != picked_->particle && spring.j != picked_->particle) continue;
+  for (std::size_t k = 0; k < garment.springs.size(); ++k) {
+    const cloth::Spring& spring = garment.springs[k];
+    const bool of_particle = spring.i == picked_->particle || spring.j == picked_->particle;
+    if (picked_edge_ ? static_cast<int>(k) != *picked_edge_ : !of_particle) continue;
     const Vec3 &a = positions[spring.i], &b = positions[spring.j];
     view.lines.push_back(
         {a.cast<float>(), b.cast<float>(), strain_colour((b - a).norm() / spring.rest_length - 1.0), {2, 2}});
   }
-  view.marks.push_back({positions[picked_->particle].cast<float>(), k_yellow});
+  if (!picked_edge_) view.marks.push_back({positions[picked_->particle].cast<float>(), k_yellow});
 }
 
 void ScenePlayer::pick(std::size_t garment, int particle) {
   picked_ = Picked{garment, particle};
+  picked_edge_.reset();
   forget_first_wrong();
 }
 
 void ScenePlayer::pick_as(const ScenePlayer& other) {
   picked_.reset();
+  picked_edge_.reset();
   picked_proxy_.reset();
   const auto& same = other.picked_;
   if (same && same->garment < scene_->garments.size() &&
@@ -183,9 +188,11 @@ void ScenePlayer::forget_first_wrong() {
 
 void ScenePlayer::pick(const Ray& ray) {
   picked_.reset();
+  picked_edge_.reset();
   picked_proxy_.reset();
   forget_first_wrong();
   if (drawn_.cloth || drawn_.particles || drawn_.strain) pick_particle(ray);
+  if (picked_) pick_edge(ray);
   if (!picked_ && drawn_.proxies) pick_proxy(ray);
 }
 
@@ -201,6 +208,27 @@ void ScenePlayer::pick_particle(const Ray& ray) {
       best = score;
       picked_ = Picked{g, static_cast<int>(i)};
     }
+  }
+}
+
+void ScenePlayer::pick_edge(const Ray& ray) {
+  constexpr double k_margin = 0.25; // of the edge: nearer to an end it is that particle that is meant
+  const Vec3 from = ray.from.cast<double>(), direction = ray.direction.cast<double>();
+  const std::vector<Vec3>& positions = shown_->garments[picked_->garment].positions;
+  const Vec3 way = positions[picked_->particle] - from;
+  const double along = way.dot(direction);
+  double nearest = 0.5 * (way - along * direction).norm();
+  const std::vector<cloth::Spring>& springs = scene_->garments[picked_->garment].springs;
+  for (std::size_t k = 0; k < springs.size(); ++k) {
+    const cloth::Spring& spring = springs[k];
+    if (spring.kind != cloth::SpringKind::structural) continue;
+    const Passing pass = passing(from, direction, positions[spring.i], positions[spring.j]);
+    // Of the sheet that the particle is on, not one behind it.
+    if (pass.aside >= nearest || pass.at < k_margin || pass.at > 1.0 - k_margin ||
+        std::abs(pass.along - along) > spring.rest_length)
+      continue;
+    nearest = pass.aside;
+    picked_edge_ = static_cast<int>(k);
   }
 }
 
@@ -228,8 +256,13 @@ std::optional<WhyProxy> ScenePlayer::why_proxy() const {
   return explain_proxy(*scene_, *picked_proxy_, *shown_);
 }
 
+std::optional<WhyEdge> ScenePlayer::why_edge() const {
+  if (!picked_ || !picked_edge_) return std::nullopt;
+  return explain_edge(*scene_, picked_->garment, *picked_edge_, *shown_);
+}
+
 std::optional<Why> ScenePlayer::why_shown() {
-  if (!picked_) return std::nullopt;
+  if (!picked_ || picked_edge_) return std::nullopt;
   const auto before = simulation_->frame(shown_->index - 1);
   Why why = explain(*scene_, picked_->garment, picked_->particle, *shown_, before.get());
   for (; looked_at_ < shown_->index && !first_wrong_; ++looked_at_)
@@ -241,6 +274,7 @@ std::optional<Why> ScenePlayer::why_shown() {
 
 std::vector<std::vector<std::string>> ScenePlayer::why() {
   if (const auto proxy = why_proxy()) return {text_of(*proxy)};
+  if (const auto edge = why_edge()) return {text_of(*edge)};
   const std::optional<Why> why = why_shown();
   return {why ? text_of(*why) : std::vector<std::string>{}};
 }

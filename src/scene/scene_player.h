@@ -4,6 +4,7 @@
 #include "src/scene/scene_view.h"
 #include "src/scene/simulation.h"
 #include "src/scene/why.h"
+#include "src/scene/why_edge.h"
 #include "src/viewer/player.h"
 
 #include <memory>
@@ -58,12 +59,14 @@ public:
   Simulation::Extent extent() const { return simulation_->extent(); }
   /// Of the particle that is picked, at the frame that is shown, back to the start of what is recorded.
   std::optional<Why> why_shown();
+  std::optional<WhyEdge> why_edge() const;   ///< of the edge that is picked
   std::optional<WhyProxy> why_proxy() const; ///< of the proxy that is picked
 
 private:
   void jump(); ///< to the target
   void forget_first_wrong();
   void pick_particle(const Ray& ray);
+  void pick_edge(const Ray& ray); ///< in the place of the particle, where the ray passes an edge's middle nearer
   void pick_proxy(const Ray& ray);
   void skin();
   void add_picked(FrameView& view);
@@ -82,6 +85,7 @@ private:
     int particle;
   };
   std::optional<Picked> picked_;
+  std::optional<int> picked_edge_; ///< spring of the picked particle's garment
   std::optional<int> picked_proxy_;
   Layers drawn_;                          ///< only what is seen can be picked
   std::optional<FirstWrong> first_wrong_; ///< of it, among the frames up to

@@ -23,7 +23,7 @@ constexpr ImGuiWindowFlags k_panel_flags = ImGuiWindowFlags_NoDecoration | ImGui
 constexpr std::array<std::array<const char*, 2>, 5> k_mouse = {{{"drag", "turn"},
                                                                 {"Shift or middle drag", "move aside"},
                                                                 {"wheel", "nearer, further"},
-                                                                {"click", "why that particle (or proxy) is so"},
+                                                                {"click", "why that particle, edge or proxy is so"},
                                                                 {"drop a file", "play that scene or character"}}};
 
 void draw_menus(std::span<const std::string> recent, ViewerState& state) {

@@ -48,6 +48,57 @@ std::pair<double, Vec3> from_upright(const proxies::Capsule& c, const Vec3& p) {
   return {(p - foot).norm() - c.radius, foot};
 }
 
+/// An edge against dense sampling of it.
+TEST_F(WhyAParticle, AnEdgesContactsAreThoseOfItsNearestPoint) {
+  const std::vector<FrameState> frames = run(12);
+  const cloth::Garment& garment = scene_.garments[0];
+  const std::vector<Vec3>& positions = frames[12].garments[0].positions;
+  const double gap = garment.fabric.contact_offset();
+  int touching = 0;
+  for (std::size_t k = 0; k < garment.springs.size(); ++k) {
+    const cloth::Spring& spring = garment.springs[k];
+    const WhyEdge why = explain_edge(scene_, 0, static_cast<int>(k), frames[12]);
+    EXPECT_EQ(why.i, spring.i);
+    EXPECT_EQ(why.j, spring.j);
+    EXPECT_DOUBLE_EQ(why.stretch(), (positions[spring.j] - positions[spring.i]).norm() / spring.rest_length - 1.0);
+    double nearest = 1e9;
+    for (int n = 0; n <= 1000; ++n) {
+      const Vec3 point = positions[spring.i] + 0.001 * n * (positions[spring.j] - positions[spring.i]);
+      nearest = std::min(nearest, from_upright(frames[12].colliders_end[0], point).first);
+    }
+    ASSERT_EQ(why.contacts.size(), nearest < gap + k_touch_slack ? 1u : 0u) << nearest;
+    if (why.contacts.empty()) continue;
+    ++touching;
+    EXPECT_NEAR(why.contacts[0].distance, nearest, 1e-6);
+    EXPECT_NEAR(why.contacts[0].depth, std::max(0.0, gap - nearest), 1e-6);
+    const Vec3 at = positions[spring.i] + why.contacts[0].at * (positions[spring.j] - positions[spring.i]);
+    EXPECT_NEAR(from_upright(frames[12].colliders_end[0], at).first, nearest, 1e-6);
+  }
+  EXPECT_GT(touching, 5);
+}
+
+TEST_F(WhyAParticle, AClickBetweenTwoFindsTheirEdge) {
+  ScenePlayer player(scene_, {scene_.garments[0].rest_positions}, 20);
+  player.views({});
+  const std::vector<Vec3f> at = [&] {
+    std::vector<Vec3f> all;
+    for (const Vec3& p : player.shown().garments[0].positions) all.push_back(p.cast<float>());
+    return all;
+  }();
+  const auto click = [&](const Vec3f& target) {
+    const Vec3f eye(0.1f, 3.0f, 0.2f), direction = (target - eye).normalized();
+    player.pick(Player::Ray{eye, direction, 0.02f});
+  };
+  for (const int i : {12, 30, 50}) {
+    click(at[i]);
+    EXPECT_TRUE(player.why_shown() && player.why_shown()->particle == i && !player.why_edge()) << i;
+    click(0.5f * (at[i] + at[i + 1]));
+    const auto edge = player.why_edge();
+    ASSERT_TRUE(edge && !player.why_shown()) << i;
+    EXPECT_EQ(std::minmax(edge->i, edge->j), std::minmax(i, i + 1));
+  }
+}
+
 TEST_F(WhyAParticle, ItsContactsAndConstraintsAreThoseOfPlainLoops) {
   const std::vector<FrameState> frames = run(12);
   const cloth::Garment& garment = scene_.garments[0];
