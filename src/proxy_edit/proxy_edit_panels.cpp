@@ -133,7 +133,11 @@ void ask_for_file(ProxyEditor& editor, std::span<char> name, bool& offered) {
   }
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 36);
   const bool enter = ImGui::InputText("##file", name.data(), name.size(), ImGuiInputTextFlags_EnterReturnsTrue);
-  if (ImGui::Button("save (Enter)") || enter) editor.answer_save_as(name.data());
+  if (enter) {
+    editor.answer_save_as(name.data());
+    ImGui::SetKeyboardFocusHere(-1); // where it failed, another name can be typed at once
+  }
+  if (ImGui::Button("save (Enter)")) editor.answer_save_as(name.data());
   ImGui::SameLine();
   if (ImGui::Button("stay (Esc)")) editor.cancel_question();
   ImGui::EndPopup();

@@ -269,9 +269,9 @@ void ProxyEditor::answer_leave(bool save) {
 }
 
 void ProxyEditor::answer_save_as(const std::string& file) {
+  if (file.empty() || !save_to(file)) return; // the question stays, with the message
   question_ = ProxyQuestion::none;
-  const bool saved = !file.empty() && save_to(file);
-  leaving_ = saved && leave_after_;
+  leaving_ = leave_after_;
   leave_after_ = false;
 }
 

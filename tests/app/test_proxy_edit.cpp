@@ -348,7 +348,11 @@ TEST_F(ProxyEditFiles, WhatIsSavedReadsBack) {
   for (int k = 0; k < 20; ++k) edit(editor, dice);
   editor.run(ProxyCommand::save); // there is no file yet
   EXPECT_EQ(editor.question(), ProxyQuestion::save_as);
+  editor.answer_save_as(folder_ / "nowhere" / "new.json");
+  EXPECT_EQ(editor.question(), ProxyQuestion::save_as); // for another name
+  EXPECT_TRUE(editor.document().dirty());
   editor.answer_save_as(folder_ / "new.json");
+  EXPECT_EQ(editor.question(), ProxyQuestion::none);
   EXPECT_FALSE(editor.document().dirty());
   EXPECT_EQ(editor.file(), folder_ / "new.json");
   const std::vector<Proxy> read = proxies::read_proxies(folder_ / "new.json", body.skeleton);
