@@ -23,38 +23,4 @@ bool same_proxies(const std::vector<proxies::Proxy>& a, const std::vector<proxie
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), same_proxy);
 }
 
-ProxyDocument::ProxyDocument(std::vector<proxies::Proxy> start) : written_(start) {
-  history_.push_back({std::move(start), std::nullopt});
-}
-
-void ProxyDocument::change(ProxyEditState next) {
-  keep();
-  history_.resize(present_ + 1);
-  history_.push_back(std::move(next));
-  ++present_;
-}
-
-void ProxyDocument::select(std::optional<int> proxy) { history_[present_].selected = proxy; }
-
-void ProxyDocument::keep() {
-  if (!gesture_) return;
-  ProxyEditState next = std::move(*gesture_);
-  gesture_.reset();
-  if (!same_proxies(next.proxies, state().proxies)) change(std::move(next));
-}
-
-bool ProxyDocument::undo() {
-  drop();
-  if (present_ == 0) return false;
-  --present_;
-  return true;
-}
-
-bool ProxyDocument::redo() {
-  drop();
-  if (redo_depth() == 0) return false;
-  ++present_;
-  return true;
-}
-
 } // namespace tutu::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "proxies/collider.h"
+#include "src/edit_history.h"
 
 #include <optional>
 #include <vector>
@@ -17,39 +18,23 @@ struct ProxyEditState {
 /// To the bit.
 bool same_proxies(const std::vector<proxies::Proxy>& a, const std::vector<proxies::Proxy>& b);
 
-/// States are immutable once in the history; there is always one.
-class ProxyDocument {
+struct SameProxies {
+  bool operator()(const ProxyEditState& a, const ProxyEditState& b) const { return same_proxies(a.proxies, b.proxies); }
+};
+
+class ProxyDocument : public EditHistory<ProxyEditState, SameProxies> {
 public:
   /// `start` counts as written.
-  explicit ProxyDocument(std::vector<proxies::Proxy> start);
+  explicit ProxyDocument(std::vector<proxies::Proxy> start)
+      : EditHistory({start, std::nullopt}), written_(std::move(start)) {}
 
-  /// What is seen: the gesture's state while there is one, else the present step of the history.
-  const ProxyEditState& state() const { return gesture_ ? *gesture_ : history_[present_]; }
-
-  /// One step. Steps that had been undone are gone.
-  void change(ProxyEditState next);
   /// No step: a selection is nothing to undo.
-  void select(std::optional<int> proxy);
-
-  /// A drag shows any number of states and becomes one step when it is kept, or none when dropped or when it changed
-  /// nothing.
-  void show(ProxyEditState next) { gesture_ = std::move(next); }
-  void keep();
-  void drop() { gesture_.reset(); }
-
-  /// False at the end of the history. A gesture is dropped.
-  bool undo();
-  bool redo();
-  std::size_t undo_depth() const { return present_; }
-  std::size_t redo_depth() const { return history_.size() - 1 - present_; }
+  void select(std::optional<int> proxy) { present().selected = proxy; }
 
   bool dirty() const { return !same_proxies(state().proxies, written_); }
   void mark_written() { written_ = state().proxies; }
 
 private:
-  std::vector<ProxyEditState> history_;
-  std::size_t present_ = 0;
-  std::optional<ProxyEditState> gesture_;
   std::vector<proxies::Proxy> written_;
 };
 

@@ -7,6 +7,7 @@
 #include "src/scene/scene_view.h"
 #include "src/viewer/orbit.h"
 #include "tests/support/child_program.h"
+#include "tests/support/first_camera.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tests/support/small_scene.h"
@@ -86,26 +87,9 @@ protected:
   std::optional<test::ChildProgram> program_;
 };
 
-/// The camera that the window begins with: everything in view.
-Camera first_camera(const Scene& scene) {
-  Session session(scene);
-  session.start(drape(scene, 4.0, [](int, int) { return true; }).positions);
-  session.skin_body();
-  SceneView view(scene);
-  const FrameView first = view.frame(session, {});
-  Vec3f lo = Vec3f::Constant(1e30f), hi = -lo;
-  for (const SurfaceView& surface : first.surfaces)
-    for (const Vec3f& p : surface.positions) {
-      lo = lo.cwiseMin(p);
-      hi = hi.cwiseMax(p);
-    }
-  lo.y() = std::min(lo.y(), first.ground_height);
-  return frame_orbit(lo, hi, 0.35f, 0.08f, static_cast<float>(k_width) / k_height).camera();
-}
-
 TEST_F(ProxyEditWindow, AnEndIsDraggedSavedUndoneAndPlayed_slow) {
   const Scene scene = load_scene(read_scene(file_));
-  const Camera camera = first_camera(scene);
+  const Camera camera = test::first_camera(scene, static_cast<float>(k_width) / k_height);
   const PosedBody body(scene); // at the start, where the window stands
   const proxies::Proxy before = scene.proxies.front();
   const proxies::Capsule shape = posed(before, body.world_from_joint());

@@ -4,6 +4,8 @@
 #include "src/scene/scene_view.h"
 #include "src/scene/why.h"
 #include "src/viewer/orbit.h"
+#include "tests/support/child_program.h"
+#include "tests/support/first_camera.h"
 #include "tests/support/paths.h"
 #include "tests/support/read_png.h"
 #include "tests/support/run_program.h"
@@ -20,8 +22,6 @@ namespace tutu::app {
 namespace {
 
 constexpr int k_width = 640, k_height = 480;
-
-bool have_xdotool() { return std::system("xdotool version > /dev/null 2>&1") == 0; }
 
 /// Waits for a condition, as long as the slowest machine may take.
 bool wait_until(const std::function<bool()>& condition) {
@@ -67,7 +67,7 @@ class WindowKeys : public ::testing::Test {
 protected:
   void SetUp() override {
     if (!display_.running()) GTEST_SKIP() << "no Xvfb here";
-    if (!have_xdotool()) GTEST_SKIP() << "no xdotool here";
+    if (!test::xdotool_available()) GTEST_SKIP() << "no xdotool here";
     folder_ = test::scratch_folder();
     ::setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1);
     file_ = test::write_small_scene(folder_);
@@ -151,17 +151,8 @@ TEST_F(WindowKeys, LayersStepsAndAClick_slow) {
   const Scene scene = load_scene(read_scene(file_));
   Session session(scene);
   session.start(settled(scene));
-  session.skin_body();
-  SceneView view(scene);
-  const FrameView first = view.frame(session, {});
-  Vec3f lo = Vec3f::Constant(1e30f), hi = -lo;
-  for (const SurfaceView& surface : first.surfaces)
-    for (const Vec3f& p : surface.positions) {
-      lo = lo.cwiseMin(p);
-      hi = hi.cwiseMax(p);
-    }
-  lo.y() = std::min(lo.y(), first.ground_height);
-  const Camera camera = frame_orbit(lo, hi, 0.35f, 0.08f, static_cast<float>(k_width) / k_height).camera();
+
+  const Camera camera = test::first_camera(scene, static_cast<float>(k_width) / k_height);
   FrameState before, now;
   for (int f = 1; f <= 9; ++f) {
     session.advance();
