@@ -1,6 +1,6 @@
 #include "cloth/adaptive_substeps.h"
 
-#include "cloth/tolerances.h"
+#include "cloth/state/tolerances.h"
 
 #include <algorithm>
 #include <cmath>

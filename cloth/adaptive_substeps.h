@@ -1,8 +1,8 @@
 // How many substeps a frame needs so that nothing slips through between two of them.
 #pragma once
 
-#include "cloth/particles.h"
 #include "cloth/solver.h"
+#include "cloth/state/particles.h"
 
 #include <string>
 

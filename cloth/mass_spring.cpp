@@ -1,6 +1,7 @@
 #include "cloth/mass_spring.h"
 
-#include "cloth/solver_parts.h"
+#include "cloth/detail/solver_parts.h"
+#include "cloth/garment/springs.h"
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // The report's cloth: masses, springs, drag, gravity, semi-implicit Euler, then projection out of the colliders.
 #pragma once
 
-#include "cloth/contact_search.h"
+#include "cloth/contact/contact_search.h"
 #include "cloth/solver.h"
 
 #include <cstdint>

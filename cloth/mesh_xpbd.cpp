@@ -1,8 +1,8 @@
 #include "cloth/mesh_xpbd.h"
 
-#include "cloth/colouring.h"
-#include "cloth/dihedral.h"
-#include "cloth/solver_parts.h"
+#include "cloth/detail/colouring.h"
+#include "cloth/detail/solver_parts.h"
+#include "cloth/garment/dihedral.h"
 
 #include <cmath>
 
@@ -16,7 +16,7 @@ MeshXpbd<Scalar>::MeshXpbd(const Garment& garment)
     inverse_masses_.push_back(pinned_[i] ? Scalar(0) : static_cast<Scalar>(1.0 / garment.masses[i]));
   add_stretches();
   add_hinges();
-  add_ropes();
+  add_tethers();
   reset(garment.rest_positions);
 }
 
@@ -43,9 +43,9 @@ template <class Scalar> void MeshXpbd<Scalar>::add_hinges() {
                        static_cast<Scalar>(1.0 / bends[e].stiffness)});
 }
 
-template <class Scalar> void MeshXpbd<Scalar>::add_ropes() {
+template <class Scalar> void MeshXpbd<Scalar>::add_tethers() {
   for (const Tether& tether : build_tethers(*garment_))
-    ropes_.push_back({tether.particle, tether.anchor, static_cast<Scalar>(longest_of(tether, garment_->fabric))});
+    tethers_.push_back({tether.particle, tether.anchor, static_cast<Scalar>(longest_of(tether, garment_->fabric))});
 }
 
 template <class Scalar> void MeshXpbd<Scalar>::reset(std::span<const Vec3> positions) {
@@ -96,10 +96,10 @@ template <class Scalar> void MeshXpbd<Scalar>::solve(const Hinge& hinge, Scalar 
   x_[hinge.d] += (wd * step) * bent.at_d;
 }
 
-template <class Scalar> void MeshXpbd<Scalar>::solve(const Rope& rope) {
-  const Vector d = x_[rope.particle] - x_[rope.anchor];
+template <class Scalar> void MeshXpbd<Scalar>::solve(const TetherLimit& tether) {
+  const Vector d = x_[tether.particle] - x_[tether.anchor];
   const Scalar length = d.norm();
-  if (length > rope.length) x_[rope.particle] -= (1 - rope.length / length) * d;
+  if (length > tether.length) x_[tether.particle] -= (1 - tether.length / length) * d;
 }
 
 template <class Scalar> void MeshXpbd<Scalar>::solve_constraints(double h, bool up_first) {
@@ -122,7 +122,7 @@ template <class Scalar> void MeshXpbd<Scalar>::solve_constraints(double h, bool 
   for (const Hinge& hinge : hinges_) solve(hinge, per_h2);
   if (up_first) down();
   else up();
-  for (const Rope& rope : ropes_) solve(rope);
+  for (const TetherLimit& tether : tethers_) solve(tether);
 
   for (std::size_t i = 0; i < x_.size(); ++i)
     if (!pinned_[i]) particles_.positions[i] += (x_[i] - predicted_[i]).template cast<double>();

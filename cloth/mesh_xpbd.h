@@ -1,8 +1,8 @@
 // Extended position-based dynamics in small steps for cloth of any triangles.
 #pragma once
 
-#include "cloth/contact_search.h"
-#include "cloth/garment_elements.h"
+#include "cloth/contact/contact_search.h"
+#include "cloth/garment/elements.h"
 #include "cloth/solver.h"
 
 #include <cstdint>
@@ -57,18 +57,18 @@ private:
     int a = 0, b = 0, c = 0, d = 0;
     Scalar rest_angle = 0, compliance = 0; ///< rad, 1/(N m)
   };
-  struct Rope {
+  struct TetherLimit {
     int particle = 0, anchor = 0;
     Scalar length = 0; ///< m
   };
 
   void add_stretches();
   void add_hinges();
-  void add_ropes();
+  void add_tethers();
   void predict(const FrameInput& input, double s, double h);
   void solve(Stretch& stretch, Scalar per_h2); ///< 1/s2
   void solve(const Hinge& hinge, Scalar per_h2);
-  void solve(const Rope& rope);
+  void solve(const TetherLimit& tether);
   void solve_constraints(double h, bool up_first);
   std::optional<Divergence> check(int substep) const;
 
@@ -79,7 +79,7 @@ private:
   std::vector<Scalar> inverse_masses_; ///< 1/kg, 0 for pinned particles
   std::vector<Stretch> stretches_;     ///< colour by colour
   std::vector<Hinge> hinges_;          ///< colour by colour
-  std::vector<Rope> ropes_;
+  std::vector<TetherLimit> tethers_;
   std::vector<Vector> x_, predicted_; ///< from a particle of the garment: being solved, and before
   ContactSearch contacts_;
   SolverTimes times_;

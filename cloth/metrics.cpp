@@ -1,6 +1,6 @@
 #include "cloth/metrics.h"
 
-#include "proxies/signed_distance.h"
+#include "proxies/distance/signed_distance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 // How good a state is: stretch, penetration, jitter. Plain double measurements, outside every timing.
 #pragma once
 
-#include "cloth/garment.h"
-#include "cloth/particles.h"
+#include "cloth/garment/garment.h"
+#include "cloth/state/particles.h"
 #include "proxies/shapes.h"
 
 #include <cstdint>

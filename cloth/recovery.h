@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cloth/solver.h"
-#include "cloth/tolerances.h"
+#include "cloth/state/tolerances.h"
 
 #include <memory>
 #include <optional>

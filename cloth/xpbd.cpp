@@ -1,10 +1,10 @@
 #include "cloth/xpbd.h"
 
-#include "cloth/contact_search.h"
-#include "cloth/self_collision.h"
-#include "cloth/solver_parts.h"
-#include "cloth/tolerances.h"
-#include "cloth/woven_contacts.h"
+#include "cloth/contact/contact_search.h"
+#include "cloth/contact/self_collision.h"
+#include "cloth/detail/solver_parts.h"
+#include "cloth/state/tolerances.h"
+#include "cloth/woven/contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ template <class T> class Xpbd final : public Solver {
 public:
   Xpbd(const Garment& garment, const SolverOptions& options)
       : garment_(&garment), kernel_(woven_kernel<T>()), sheet_(garment, options.passes > 1), passes_(options.passes),
-        pinned_(pinned_flags(garment)), contacts_(garment, options), search_(garment.fabric.contact_offset()) {
+        pinned_(pinned_flags(garment)), contacts_(garment, options, sheet_), search_(garment.fabric.contact_offset()) {
     for (const Seam& seam : garment.seams)
       seam_shares_.push_back(static_cast<T>(share_of_second(garment, pinned_, seam)));
     if (options.self_collision) {

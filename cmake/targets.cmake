@@ -12,12 +12,13 @@ target_compile_options(tutu_arithmetic INTERFACE -ffp-contract=off -fno-math-err
 
 install(TARGETS tutu_warnings tutu_arithmetic EXPORT tutuTargets)
 
-# tutu_library(NAME [PRIVATE_HEADERS REGEX]): all sources of this folder as library tutu_NAME, alias tutu::NAME. Headers whose
-# name matches the regex are the folder's own and are not installed.
+# tutu_library(NAME [INSTALLED] [PRIVATE_FOLDERS FOLDER...]): all sources of this folder and below it as library tutu_NAME,
+# alias tutu::NAME. With INSTALLED other projects get it too, with its headers but for those in a folder `detail` or in one
+# that is named: such a folder is its library's own, which tests/house checks.
 function(tutu_library name)
-  cmake_parse_arguments(arg "" "PRIVATE_HEADERS" "" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
-  file(GLOB headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
+  cmake_parse_arguments(arg "INSTALLED" "" "PRIVATE_FOLDERS" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp)
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.h)
   add_library(tutu_${name} STATIC ${sources} ${headers})
   add_library(tutu::${name} ALIAS tutu_${name})
   set_target_properties(tutu_${name} PROPERTIES EXPORT_NAME ${name})
@@ -25,10 +26,22 @@ function(tutu_library name)
   target_include_directories(tutu_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/tutu>)
   target_link_libraries(tutu_${name} PRIVATE tutu_warnings tutu_arithmetic)
-  install(TARGETS tutu_${name} EXPORT tutuTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  set(public_headers ${headers})
-  if(arg_PRIVATE_HEADERS)
-    list(FILTER public_headers EXCLUDE REGEX "/(${arg_PRIVATE_HEADERS})[a-z_]*\\.h$")
+  if(NOT arg_INSTALLED)
+    return()
   endif()
-  install(FILES ${public_headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tutu/${name})
+  install(TARGETS tutu_${name} EXPORT tutuTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  foreach(header IN LISTS headers)
+    file(RELATIVE_PATH header ${PROJECT_SOURCE_DIR} ${header})
+    get_filename_component(folder ${header} DIRECTORY)
+    string(REPLACE "/" ";" names ${folder})
+    set(private FALSE)
+    foreach(own IN ITEMS detail ${arg_PRIVATE_FOLDERS})
+      if(own IN_LIST names)
+        set(private TRUE)
+      endif()
+    endforeach()
+    if(NOT private)
+      install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/tutu/${folder})
+    endif()
+  endforeach()
 endfunction()

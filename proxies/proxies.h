@@ -2,30 +2,36 @@
 //
 //   JSON --read_proxies--> Proxy on joints --ColliderSet--> capsules at both ends of a frame (world space)
 //   capsules --CollisionQuery--> candidates once a frame, contacts each substep
-//   collider_motion: where a capsule is between the ends of a frame, what it covers, how its surface moves
-//   body_mesh: the true, skinned body as a solid, for validation and for reference runs
-//   validate: how far posed proxies are from the posed body, with a bound
-//   signed_distance, feature_contact: a point, an edge, a triangle against a capsule; sweep: when they first touch
 //
 // Units m. Signed distance is negative inside; a contact normal is unit and points from the collider to the particle:
 // particle = closest + distance * normal. Spheres are capsules of no length, so the hot path knows one shape.
-// FCL is asked only in broad_phase.cpp, narrow_phase.cpp and mesh_tree.cpp.
+//
+// Folders, each above the ones before it: proxies itself (shapes, proxies on joints, their files), distance (closed
+// forms: a point, an edge, a triangle against a shape), motion (where colliders are between the ends of a frame, and
+// when they first touch), body (the true, skinned body as a solid), query (broad and narrow phase), validate (how far
+// posed proxies are from the posed body, with a bound), fit (proxies made for a character). FCL is asked only in
+// query/detail/broad_phase.cpp, query/detail/narrow_phase.cpp and body/detail/mesh_tree.cpp.
 #pragma once
 
-#include "proxies/body_mesh.h"       // IWYU pragma: export
-#include "proxies/capsule_union.h"   // IWYU pragma: export
-#include "proxies/collider.h"        // IWYU pragma: export
-#include "proxies/collider_motion.h" // IWYU pragma: export
-#include "proxies/collider_set.h"    // IWYU pragma: export
-#include "proxies/collision_query.h" // IWYU pragma: export
-#include "proxies/contact.h"         // IWYU pragma: export
-#include "proxies/error_figures.h"   // IWYU pragma: export
-#include "proxies/feature_contact.h" // IWYU pragma: export
-#include "proxies/fit.h"             // IWYU pragma: export
-#include "proxies/proxy_file.h"      // IWYU pragma: export
-#include "proxies/shapes.h"          // IWYU pragma: export
-#include "proxies/signed_distance.h" // IWYU pragma: export
-#include "proxies/skin_samples.h"    // IWYU pragma: export
-#include "proxies/surface_cells.h"   // IWYU pragma: export
-#include "proxies/sweep.h"           // IWYU pragma: export
-#include "proxies/validate.h"        // IWYU pragma: export
+// What a caller needs first.
+#include "proxies/motion/collider_set.h"   // IWYU pragma: export
+#include "proxies/proxy_file.h"            // IWYU pragma: export
+#include "proxies/query/collision_query.h" // IWYU pragma: export
+#include "proxies/shapes.h"                // IWYU pragma: export
+
+// The rest.
+#include "proxies/body/body_mesh.h"           // IWYU pragma: export
+#include "proxies/body/point_triangle.h"      // IWYU pragma: export
+#include "proxies/body/winding.h"             // IWYU pragma: export
+#include "proxies/collider.h"                 // IWYU pragma: export
+#include "proxies/contact.h"                  // IWYU pragma: export
+#include "proxies/distance/capsule_union.h"   // IWYU pragma: export
+#include "proxies/distance/feature_contact.h" // IWYU pragma: export
+#include "proxies/distance/signed_distance.h" // IWYU pragma: export
+#include "proxies/distance/surface_cells.h"   // IWYU pragma: export
+#include "proxies/fit/fit.h"                  // IWYU pragma: export
+#include "proxies/motion/collider_motion.h"   // IWYU pragma: export
+#include "proxies/motion/sweep.h"             // IWYU pragma: export
+#include "proxies/validate/error_figures.h"   // IWYU pragma: export
+#include "proxies/validate/skin_samples.h"    // IWYU pragma: export
+#include "proxies/validate/validate.h"        // IWYU pragma: export

@@ -1,7 +1,7 @@
 #include "proxies/proxy_file.h"
 
-#include "rig/file_io.h"
-#include "rig/json_file.h"
+#include "rig/io/file_io.h"
+#include "rig/io/json_file.h"
 
 #include <algorithm>
 #include <cctype>

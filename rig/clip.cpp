@@ -3,7 +3,6 @@
 #include "rig/error.h"
 #include "rig/flight.h"
 #include "rig/interpolation.h"
-#include "rig/json_file.h"
 
 #include <algorithm>
 #include <cassert>
@@ -144,6 +143,12 @@ Interpolation interpolation_named(std::string_view name) {
   const auto found = std::find(k_interpolation_names.begin(), k_interpolation_names.end(), name);
   assert(found != k_interpolation_names.end());
   return static_cast<Interpolation>(found - k_interpolation_names.begin());
+}
+
+void pose_at(const Clip& clip, const Skeleton& skeleton, double time, std::span<Transform> local,
+             std::span<Transform> model) {
+  sample(clip, clip.times.front() + time, local);
+  model_from_local(skeleton, local, model);
 }
 
 } // namespace tutu::rig

@@ -91,6 +91,10 @@ void set_interpolation(Clip& clip, Interpolation interpolation);
 /// Allocates nothing.
 void sample(const Clip& clip, double time, std::span<Transform> local);
 
+/// The pose `time` s after the first key: sample(), then model_from_local(). Both spans have joint_count entries.
+void pose_at(const Clip& clip, const Skeleton& skeleton, double time, std::span<Transform> local,
+             std::span<Transform> model);
+
 /// A clip made for `source` played by `target`: joints paired by name. For each pair the source's rotation away from
 /// its rest pose, seen in model space, is applied to the target's rest pose, whose bone was first turned to point as
 /// the source's bone does (so an A-pose can follow a T-pose; joints where pairs branch or end turn with the one above).

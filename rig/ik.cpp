@@ -1,7 +1,7 @@
 // Limits, and limbs of two bones. Chains are in ik_chain.cpp.
 #include "rig/ik.h"
 
-#include "rig/ik_detail.h"
+#include "rig/detail/ik_chain.h"
 
 #include <algorithm>
 #include <cassert>

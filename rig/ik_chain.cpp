@@ -1,4 +1,4 @@
-#include "rig/ik_detail.h"
+#include "rig/detail/ik_chain.h"
 
 #include <cassert>
 #include <cmath>

@@ -6,6 +6,9 @@
 
 namespace tutu {
 
+/// No number of a file may be larger, in any unit: no scene is, and products of a few stay far from overflow.
+inline constexpr double k_largest_number = 1e9;
+
 using Vec3 = Eigen::Vector3d;  ///< metres unless said otherwise
 using Vec3f = Eigen::Vector3f; ///< single precision, for meshes and drawing
 using Quat = Eigen::Quaterniond;
@@ -36,6 +39,9 @@ Transform interpolate(const Transform& a, const Transform& b, double s);
 /// The smallest rotation that takes the direction of `from` to that of `to` (neither needs unit length).
 /// Opposite directions turn by pi about an axis perpendicular to `from`; a zero vector gives the identity.
 Quat rotation_between(const Vec3& from, const Vec3& to);
+
+/// m2.
+inline double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); }
 
 inline bool is_finite(const Vec3& v) { return v.allFinite(); }
 inline bool is_finite(const Transform& t) { return t.rotation.coeffs().allFinite() && t.translation.allFinite(); }

@@ -1,7 +1,7 @@
 #include "rig/skin.h"
 
-#include "rig/skin_kernel.h"
-#include "rig/skin_rigid.h"
+#include "rig/detail/skin_kernel.h"
+#include "rig/detail/skin_rigid.h"
 
 #include <cassert>
 #include <cmath>

@@ -43,7 +43,7 @@ std::map<SlotPair, std::vector<Patch>> patches_by_pair(const Mesh& mesh, const S
   for (const Triangle& triangle : mesh.triangles) {
     const auto corner = [&](int i) { return Vec3(mesh.positions[triangle[i]].cast<double>()); };
     const Vec3 a = corner(0), b = corner(1), c = corner(2);
-    const double area = 0.5 * (b - a).cross(c - a).norm();
+    const double area = triangle_area(a, b, c);
     const Weights weights = weights_of(skin, triangle);
     for (std::size_t j = 0; j < weights.size(); ++j)
       for (std::size_t k = j + 1; k < weights.size(); ++k)

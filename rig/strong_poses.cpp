@@ -65,13 +65,13 @@ Roles find_roles(const Skeleton& skeleton) {
 
 /// What one pose asks for, at a share of its full strength. Directions are those of the left side; of the right
 /// they are mirrored.
-struct Limb {
+struct LimbPose {
   std::optional<Vec3> upper; ///< direction of the upper leg or arm, as seen from the pelvis or chest
   double bend = 0.0;         ///< of the knee or elbow, degrees
 };
 struct Plan {
   const char* name;
-  Limb left_leg = {}, right_leg = {}, left_arm = {}, right_arm = {};
+  LimbPose left_leg = {}, right_leg = {}, left_arm = {}, right_arm = {};
   double forward = 0.0, side = 0.0, twist = 0.0; ///< of the whole spine, degrees; side: to the left
   double pelvis = 0.0;                           ///< leaned forward, degrees
 };
@@ -108,7 +108,7 @@ public:
   }
 
 private:
-  void turn_limb(const Limb& limb, int upper, int lower, int end, bool right, bool leg, double strength,
+  void turn_limb(const LimbPose& limb, int upper, int lower, int end, bool right, bool leg, double strength,
                  std::vector<Quat>& turns) const {
     if (upper < 0) return;
     const Vec3 along = lower >= 0 ? Vec3(rest_[lower].translation - rest_[upper].translation) : Vec3(-Vec3::UnitY());
@@ -204,7 +204,7 @@ std::vector<Plan> plans() {
 }
 
 bool is_symmetric(const Plan& plan) {
-  const auto same = [](const Limb& a, const Limb& b) { return a.upper == b.upper && a.bend == b.bend; };
+  const auto same = [](const LimbPose& a, const LimbPose& b) { return a.upper == b.upper && a.bend == b.bend; };
   return same(plan.left_leg, plan.right_leg) && same(plan.left_arm, plan.right_arm) && plan.side == 0.0 &&
          plan.twist == 0.0;
 }

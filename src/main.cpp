@@ -1,5 +1,4 @@
 // tutu: garments on animated characters. Here is only the way from the command line to a command.
-#include "rig/error.h"
 #include "src/commands/commands.h"
 
 #include <fmt/format.h>
@@ -39,16 +38,5 @@ int main(int argc, char** argv) {
   add_cell(app, status);
   add_chart(app, status);
   add_plan(app, status);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? k_ok : k_bad_input;
-  } catch (const tutu::InputError& error) {
-    fmt::print(stderr, "tutu: {}\n", error.what());
-    return k_bad_input;
-  } catch (const std::exception& error) { // a disk that is full, a driver that is missing
-    fmt::print(stderr, "tutu: {}\n", error.what());
-    return k_bad_input;
-  }
-  return status;
+  return run_program(app, argc, argv, status);
 }

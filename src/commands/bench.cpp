@@ -1,13 +1,13 @@
 #include "rig/error.h"
-#include "rig/file_io.h"
-#include "src/bench/bench_metrics.h"
-#include "src/bench/dancer_skirt.h"
-#include "src/bench/stability_report.h"
+#include "rig/io/file_io.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
-#include "src/scene/session.h"
+#include "src/measure/frame_metrics.h"
+#include "src/options/scene_options.h"
+#include "src/run/session.h"
+#include "src/study/bench/dancer_skirt.h"
+#include "src/study/bench/stability_report.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -152,7 +152,7 @@ int run_dancer_skirt(const Options& options) {
 
 int run_stability_family(const Options& options) {
   StabilitySetup setup;
-  setup.solver.kind = cloth::solver_named(options.solver);
+  setup.solver.solver = cloth::solver_named(options.solver);
   setup.backend = proxies::backend_named(options.backend);
   setup.adaptive = !options.fixed_substeps;
   if (options.substeps) setup.substeps = *options.substeps;

@@ -1,10 +1,11 @@
 // tutu cell: one setting of a scene, one run, one row. What `tutu chart` starts many of.
 #include "rig/error.h"
-#include "src/chart/results_file.h"
-#include "src/commands/chart_options.h"
+#include "src/base/interrupt.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/interrupt.h"
+#include "src/options/chart_options.h"
+#include "src/options/scene_options.h"
+#include "src/scene/load.h"
+#include "src/study/chart/results_file.h"
 
 #include <fmt/format.h>
 
@@ -20,8 +21,8 @@ struct Options {
   std::optional<double> resolution;
 };
 
-Setting setting_for(const Options& o, const SceneDescription& description) {
-  Setting s = setting_of(description);
+Setting setting_for(const Options& o, const RunSettings& of_scene) {
+  Setting s = own_setting(of_scene);
   if (o.solver) s.solver = cloth::solver_named(*o.solver);
   if (o.backend) s.backend = proxies::backend_named(*o.backend);
   if (o.substeps) s.substeps = *o.substeps;
@@ -35,7 +36,7 @@ Setting setting_for(const Options& o, const SceneDescription& description) {
   if (o.precision) s.double_precision = *o.precision == "on";
   if (o.self_collision) s.self_collision = *o.self_collision == "on";
   if (o.threads) s.threads = *o.threads;
-  s.name = !o.name.empty() || !(s == setting_of(description)) ? o.name : s.name;
+  s.name = !o.name.empty() || !(s == own_setting(of_scene)) ? o.name : s.name;
   return s;
 }
 
@@ -46,12 +47,11 @@ void print_row(const Row& row) {
 
 int run(const Options& options) {
   catch_interrupt();
-  const Scene base = options.chart.load();
+  const LoadedScene base = options.chart.load();
   const ReferencePlan plan = options.chart.plan(base);
-  const Setting setting = setting_for(options, base.description);
-  const Scene scene = with_setting(base, setting);
-  const Protocol protocol =
-      at_rate(plan.protocol, base.description.frames_per_second, scene.description.frames_per_second);
+  const Setting setting = setting_for(options, base.settings);
+  const LoadedScene scene = with_setting(base, setting);
+  const Protocol protocol = at_rate(plan.protocol, base.settings.frames_per_second, scene.settings.frames_per_second);
   const auto reference = options.chart.obtain(base, 1);
   if (!reference) return k_not_met;
 
@@ -61,10 +61,10 @@ int run(const Options& options) {
     fmt::print(stderr, "tutu: interrupted; no row written\n");
     return k_not_met;
   }
-  const Scene truth = with_setting(base, reference_setting(base, plan, reference->substeps));
+  const LoadedScene truth = with_setting(base, reference_setting(base, plan, reference->substeps));
   const CellTask task{base.name(), reference->fingerprint, plan.protocol, setting, options.seed};
   const Row row =
-      row_of(scene, task, run, errors_against(truth.garments, reference->recording, scene.garments, run.recording));
+      row_of(scene, task, run, errors_against(truth.garments, reference->trajectory, scene.garments, run.trajectory));
   if (options.out.empty()) print_row(row);
   else add_row(options.out, row);
   return run.failure.empty() ? k_ok : k_not_met;

@@ -1,16 +1,17 @@
 // tutu chart: speed against accuracy of many settings of one scene.
-#include "src/export/chart.h"
 #include "rig/error.h"
-#include "rig/file_io.h"
-#include "src/chart/chart_page.h"
-#include "src/chart/chart_picture.h"
-#include "src/chart/results_file.h"
-#include "src/chart/settings_grid.h"
-#include "src/chart/slurm_array.h"
-#include "src/commands/chart_options.h"
+#include "rig/io/file_io.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
+#include "src/options/chart_options.h"
+#include "src/scene/load.h"
+#include "src/study/chart/chart_page.h"
+#include "src/study/chart/chart_picture.h"
+#include "src/study/chart/results_file.h"
+#include "src/study/chart/settings_grid.h"
+#include "src/study/chart/slurm_array.h"
+#include "src/study/report/gnuplot_chart.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -35,7 +36,7 @@ struct Options {
 constexpr int k_repeats = 3, k_quick_repeats = 2;
 
 /// Makes the files of proxies that are only a number so far, in the folder of the results, by `tutu fit`.
-void make_fitted(std::vector<Setting>& settings, const Scene& scene, const fs::path& folder, int jobs) {
+void make_fitted(std::vector<Setting>& settings, const LoadedScene& scene, const fs::path& folder, int jobs) {
   std::vector<std::vector<std::string>> calls;
   std::set<std::string> asked;
   for (Setting& setting : settings) {
@@ -44,11 +45,11 @@ void make_fitted(std::vector<Setting>& settings, const Scene& scene, const fs::p
     const fs::path file = folder / fmt::format("proxies-{}.json", *count);
     setting.proxies = file.string();
     if (fs::exists(file) || !asked.insert(setting.proxies).second) continue;
-    const auto* motion = std::get_if<ClipMotion>(&scene.description.motion);
+    const auto* motion = std::get_if<ClipMotion>(&scene.files.motion);
     if (!motion || motion->retarget_from)
-      throw InputError(scene.description.file.string(), "/motion", "one that tutu fit does not take",
+      throw InputError(scene.file, "/motion", "one that tutu fit does not take",
                        "a clip of this character, for settings with a number of proxies");
-    calls.push_back({"fit", scene.description.character.string(), "--motion", motion->clip.string(), "--region", "body",
+    calls.push_back({"fit", scene.files.character.string(), "--motion", motion->clip.string(), "--region", "body",
                      "--count", std::to_string(*count), "--under-weight", "12", "--out", file.string()});
   }
   Progress bar("fitting proxies", static_cast<int>(calls.size()));
@@ -165,13 +166,12 @@ int run(const Options& options) {
   }
   fs::create_directories(folder);
   catch_interrupt();
-  const Scene scene = options.chart.load();
-  const SceneDescription& description = scene.description;
-  std::vector<Setting> settings = options.settings.empty() ? builtin_settings(description, options.chart.quick)
-                                                           : read_settings(options.settings, description);
+  const LoadedScene scene = options.chart.load();
+  std::vector<Setting> settings = options.settings.empty() ? builtin_settings(scene.description(), options.chart.quick)
+                                                           : read_settings(options.settings, scene.settings);
   const ReferencePlan plan = options.chart.plan(scene);
   for (const Setting& setting : settings)
-    (void)at_rate(plan.protocol, description.frames_per_second, setting.frames_per_second);
+    (void)at_rate(plan.protocol, scene.settings.frames_per_second, setting.frames_per_second);
   read_results(folder / "results.csv"); // a file of something else is told before long work
   make_fitted(settings, scene, folder, options.jobs);
   const auto reference = interrupted() ? std::nullopt : options.chart.obtain(scene, options.jobs);
@@ -179,7 +179,7 @@ int run(const Options& options) {
   fmt::print("{}", convergence_text(*reference));
 
   const int repeats = options.repeats > 0 ? options.repeats : options.chart.quick ? k_quick_repeats : k_repeats;
-  const SettingValues of_scene = setting_values(setting_of(description));
+  const SettingValues of_scene = setting_values(own_setting(scene.settings));
   const std::vector<CellTask> tasks =
       tasks_of(settings, repeats, {scene.name(), reference->fingerprint, plan.protocol, {}, 0});
   const bool whole = run_missing(options, tasks, of_scene);

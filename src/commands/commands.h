@@ -1,14 +1,9 @@
 // The commands of the program, one file each. A command adds its own options and its own work to the command line.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "src/options/program.h"
 
 namespace tutu::app {
-
-/// Exit statuses of the program.
-inline constexpr int k_ok = 0;
-inline constexpr int k_not_met = 1;   ///< a stated tolerance is not met, or the simulation diverged
-inline constexpr int k_bad_input = 2; ///< bad usage or input
 
 /// Each adds one subcommand to `app`; running it sets `status`.
 void add_bench(CLI::App& app, int& status);

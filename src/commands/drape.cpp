@@ -1,10 +1,12 @@
-#include "cloth/drape_file.h"
-#include "cloth/tolerances.h"
+#include "src/run/drape.h"
+#include "cloth/garment/drape_file.h"
+#include "cloth/state/tolerances.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
-#include "src/scene/session.h"
+#include "src/options/scene_options.h"
+#include "src/run/session.h"
+#include "src/scene/load.h"
 
 #include <fmt/format.h>
 
@@ -19,8 +21,8 @@ struct Options {
 
 int run(const Options& options) {
   catch_interrupt();
-  const Scene scene = options.scene.load();
-  const int frames = static_cast<int>(options.seconds * scene.description.frames_per_second);
+  const LoadedScene scene = options.scene.load();
+  const int frames = static_cast<int>(options.seconds * scene.settings.frames_per_second);
   Progress bar("draping " + scene.name(), frames);
   const DrapeResult result = drape(scene, options.seconds, [&](int done, int) {
     bar.tick(done);
@@ -39,7 +41,7 @@ int run(const Options& options) {
   saved.fingerprint = drape_fingerprint(scene);
   for (std::size_t g = 0; g < scene.garments.size(); ++g)
     saved.garments.push_back({scene.garments[g].name, result.positions[g]});
-  const std::filesystem::path file = options.out.empty() ? scene.description.drape : std::filesystem::path(options.out);
+  const std::filesystem::path file = options.out.empty() ? scene.files.drape : std::filesystem::path(options.out);
   cloth::write_drape(saved, file);
   const bool settled = result.fastest < cloth::k_settled_speed;
   fmt::print("{}: {} after {:.1f} s, the fastest particle at {:.1f} mm/s\n", file.string(),

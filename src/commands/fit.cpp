@@ -1,20 +1,21 @@
 // tutu fit: proxies for a character, and what they cost in error.
-#include "proxies/fit.h"
-#include "proxies/body_mesh.h"
+#include "proxies/fit/fit.h"
+#include "proxies/body/body_mesh.h"
+#include "proxies/distance/signed_distance.h"
 #include "proxies/proxy_file.h"
-#include "proxies/signed_distance.h"
-#include "rig/clip_file.h"
 #include "rig/error.h"
-#include "rig/file_io.h"
-#include "rig/json_file.h"
+#include "rig/import/import.h"
+#include "rig/io/clip_file.h"
+#include "rig/io/file_io.h"
+#include "rig/io/json_file.h"
 #include "rig/strong_poses.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/export/chart.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
-#include "src/scene/garment_reach.h"
-#include "src/scene/worn_garment.h"
+#include "src/options/scene_options.h"
+#include "src/run/garment_reach.h"
+#include "src/scene/load.h"
+#include "src/study/report/gnuplot_chart.h"
 
 #include <algorithm>
 #include <chrono>
@@ -50,8 +51,7 @@ Poses poses_of(const rig::Clip& clip, const rig::Skeleton& skeleton) {
   std::vector<Transform> local(skeleton.rest_local);
   for (int i = 0; i < count; ++i) {
     const double share = count > 1 ? static_cast<double>(i) / count : 0.0;
-    rig::sample(clip, clip.times.front() + share * clip.duration(), local);
-    rig::model_from_local(skeleton, local, poses.emplace_back(skeleton.names.size()));
+    rig::pose_at(clip, skeleton, share * clip.duration(), local, poses.emplace_back(skeleton.names.size()));
   }
   return poses;
 }
@@ -85,7 +85,7 @@ Garments garments_for(const Options& options, const rig::Character& character) {
   if (JsonValue::read(file).has("character")) entries = read_scene(file).garments;
   if (entries.empty()) throw InputError(file.string(), "/garments", "none", "at least one garment");
   for (const GarmentEntry& entry : entries) {
-    WornGarment worn = put_on(entry, character, options.character);
+    WornGarment worn = put_on(entry, character);
     result.garments.push_back(std::move(worn.garment));
     result.joints.push_back(std::move(worn.joints));
   }
@@ -187,11 +187,7 @@ int run(const Options& options) {
   const Poses poses = poses_for(options, import, motion);
   // What is wrong with garment and body is said before the work.
   if (options.garment) garments_for(options, character);
-  try {
-    const proxies::BodyMesh body(character.mesh.positions, character.mesh.triangles);
-  } catch (const std::invalid_argument& problem) {
-    throw InputError(options.character, problem.what(), "", ""); // says what was found and expected
-  }
+  body_of(character);
   const auto region = options.region == "body" ? proxies::FitRegion::body : proxies::FitRegion::garment;
   proxies::FitOptions fit;
   fit.count = options.max_error_mm && options.count == Options{}.count ? 128 : options.count;

@@ -1,6 +1,7 @@
 // tutu inspect: what the importer understood of a character file.
 #include "rig/character.h"
-#include "rig/file_io.h"
+#include "rig/import/import.h"
+#include "rig/io/file_io.h"
 #include "src/commands/commands.h"
 
 #include <algorithm>

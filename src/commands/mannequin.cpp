@@ -1,6 +1,6 @@
-#include "rig/mannequin.h"
+#include "rig/mannequin/mannequin.h"
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
 #include "src/commands/commands.h"
 
 #include <fmt/format.h>

@@ -1,17 +1,19 @@
 // tutu plan: the least model of a scene that meets a stated error, as a scene of its own.
-#include "cloth/drape_file.h"
+#include "cloth/garment/drape_file.h"
 #include "proxies/proxy_file.h"
 #include "rig/error.h"
-#include "rig/file_io.h"
-#include "src/commands/chart_options.h"
+#include "rig/io/file_io.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/interrupt.h"
-#include "src/plan/plan_report.h"
-#include "src/progress.h"
-#include "src/scene/posed_body.h"
+#include "src/options/chart_options.h"
+#include "src/options/scene_options.h"
+#include "src/run/drape.h"
+#include "src/run/posed_body.h"
+#include "src/run/session.h"
+#include "src/scene/load.h"
 #include "src/scene/scene_write.h"
-#include "src/scene/session.h"
+#include "src/study/plan/plan_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +36,7 @@ struct Options {
 constexpr int k_pairs = 3;       // runs of each of two models whose cost is compared, and
 constexpr int k_final_pairs = 5; // of what is reported in the end
 
-PlanGoal goal_of(const Options& options, const Scene& scene) {
+PlanGoal goal_of(const Options& options, const LoadedScene& scene) {
   PlanGoal goal;
   goal.error = static_cast<PlanError>(std::find(k_plan_error_names.begin(), k_plan_error_names.end(), options.error) -
                                       k_plan_error_names.begin());
@@ -43,16 +45,16 @@ PlanGoal goal_of(const Options& options, const Scene& scene) {
   goal.frames = std::min(options.frames.value_or(k_most_frames), frames_of(scene));
   goal.starts = options.starts;
   goal.compares_bad = options.ms.has_value();
-  if (goal.frames == 0) throw InputError(scene.description.file.string(), "/motion", "one pose", "a motion");
+  if (goal.frames == 0) throw InputError(scene.file, "/motion", "one pose", "a motion");
   return goal;
 }
 
 /// Whether the scene's garments can have other cells: meshes cannot.
-bool regrids(const Scene& scene) {
-  Setting setting = setting_of(scene.description);
+bool regrids(const LoadedScene& scene) {
+  Setting setting = own_setting(scene.settings);
   setting.resolution = 2.0;
   try {
-    const Scene other = with_setting(scene, setting);
+    const LoadedScene other = with_setting(scene, setting);
     return !other.garments.empty();
   } catch (const InputError&) {
     return false;
@@ -67,12 +69,12 @@ int usual_steps(const std::vector<PlanChoice>& choices) {
   return steps;
 }
 
-PlanRecord search(const Scene& scene, PlanBench& bench, const Options& options) {
+PlanRecord search(const LoadedScene& scene, PlanBench& bench, const Options& options) {
   PlanRecord record;
-  record.choices = choices_of(scene.description, !scene.proxies.empty(), regrids(scene));
+  record.choices = choices_of(scene.settings, !scene.proxies.empty(), regrids(scene));
   std::vector<PlanAxis> axes;
   for (const PlanChoice& choice : record.choices) axes.push_back(choice.axis());
-  const auto model = [&](const PlanLevels& levels) { return model_of(scene.description, record.choices, levels); };
+  const auto model = [&](const PlanLevels& levels) { return model_of(scene.settings, record.choices, levels); };
   Progress bar("plan", usual_steps(record.choices));
   int done = 0;
   PlanMeasurer measurer;
@@ -97,17 +99,17 @@ PlanRecord search(const Scene& scene, PlanBench& bench, const Options& options) 
   measurer.go_on = [] { return !interrupted(); };
   record.result = find_plan(axes, measurer, options.ms);
   PlanModel own; // with the proxies that are out of reach
-  own.setting = setting_of(scene.description);
+  own.setting = own_setting(scene.settings);
   if (!interrupted()) record.cost = bench.compare(model(record.result.levels), own, k_final_pairs);
   return record;
 }
 
 /// The scene, and beside it its proxies and the start it was measured from, that it plays as it was measured.
-void write_plan(const Scene& scene, PlanBench& bench, PlanRecord& record, const Options& options) {
+void write_plan(const LoadedScene& scene, PlanBench& bench, PlanRecord& record, const Options& options) {
   const fs::path file = options.out;
-  const PlanModel model = model_of(scene.description, record.choices, record.result.levels);
-  const Scene planned = bench.scene_of(model);
-  SceneDescription description = planned.description;
+  const PlanModel model = model_of(scene.settings, record.choices, record.result.levels);
+  const LoadedScene planned = bench.scene_of(model);
+  SceneDescription description = planned.description();
   description.drape = fs::path(file).replace_extension(".drape.json");
   for (const proxies::Proxy& proxy : planned.proxies) record.kept.push_back(proxy.name);
   if (!scene.proxies.empty()) record.proxies = bench.proxies().uses(model);
@@ -118,7 +120,7 @@ void write_plan(const Scene& scene, PlanBench& bench, PlanRecord& record, const 
   }
   write_scene(description, file,
               fmt::format("tutu plan of {}, error \"{}\" of {:g} mm", scene.name(), options.error, options.error_mm));
-  const Scene written = load_scene(read_scene(file));
+  const LoadedScene written = load_scene(read_scene(file));
   cloth::Drape drape{drape_fingerprint(written), {}};
   const GarmentPositions start = bench.start_of(model);
   for (std::size_t g = 0; g < start.size(); ++g) drape.garments.push_back({written.garments[g].name, start[g]});
@@ -126,20 +128,20 @@ void write_plan(const Scene& scene, PlanBench& bench, PlanRecord& record, const 
 }
 
 /// A place to write to is looked for before the long work.
-void check_out(const Options& options, const Scene& scene) {
+void check_out(const Options& options, const LoadedScene& scene) {
   const fs::path file = options.out;
   if (file.extension() != ".json") throw InputError("", "--out", file.string(), "a file name that ends in .json");
   const fs::path folder = fs::absolute(file).parent_path();
   if (!fs::is_directory(folder)) throw InputError("", "--out", "no folder " + folder.string(), "a file in a folder");
   std::error_code none;
-  if (fs::equivalent(file, scene.description.file, none))
+  if (fs::equivalent(file, scene.files.file, none))
     throw InputError("", "--out", file.string(), "another file than the scene itself");
 }
 
 int run(Options options) {
   catch_interrupt();
   options.chart.quick = true;
-  const Scene scene = options.chart.load();
+  const LoadedScene scene = options.chart.load();
   if (options.out.empty()) options.out = scene.name() + "-plan.json";
   check_out(options, scene);
   const PlanGoal goal = goal_of(options, scene);
@@ -162,7 +164,7 @@ int run(Options options) {
   fmt::print(stderr, "{}", goal_text(goal, bench.limits()));
   PlanRecord record = search(scene, bench, options);
   record.skinning_ms = bench.skinning_ms();
-  record.skin_needed = scene.description.backend == proxies::Backend::mesh;
+  record.skin_needed = scene.settings.backend == proxies::Backend::mesh;
   for (const SkinPins& pins : scene.skin_pins) record.skin_needed = record.skin_needed || !pins.bindings.empty();
   write_plan(scene, bench, record, options);
   fmt::print("{}wrote {}\n", plan_text(scene.name(), record, goal, bench.limits(), options.ms), options.out);

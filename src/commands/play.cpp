@@ -1,14 +1,15 @@
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
-#include "src/scene/posed_body.h"
-#include "src/scene/proxy_error.h"
+#include "src/measure/worst_frame.h"
+#include "src/run/posed_body.h"
+#include "src/scene/load.h"
 #include "src/scene/scene_override.h"
-#include "src/stability/warning.h"
-#include "src/viewer/window.h"
+#include "src/study/stability/warning.h"
+#include "src/view/window/window.h"
 
 #include <algorithm>
 #include <charconv>
@@ -49,7 +50,7 @@ std::vector<std::string> layer_names() {
 }
 
 /// The frame that --worst asks for, told; none when interrupted.
-std::optional<int> find_worst(const Scene& scene) {
+std::optional<int> find_worst(const LoadedScene& scene) {
   Progress bar("looking for the worst frame", frames_of(scene));
   const std::optional<int> frame = worst_frame(scene, [&](int done, int) {
     bar.tick(done);
@@ -97,11 +98,11 @@ Layers layers_of(const PlayOptions& options) {
   return layers;
 }
 
-Scene load(const PlayOptions& options) {
-  Scene scene = options.scene.load();
-  if (options.fixed_substeps) scene.description.adaptive_substeps = false;
+LoadedScene load(const PlayOptions& options) {
+  LoadedScene scene = options.scene.load();
+  if (options.fixed_substeps) scene.settings.adaptive_substeps = false;
   if ((layers_of(options).proxy_error || options.worst) && scene.proxies.empty())
-    throw InputError(scene.description.file.string(), "/proxies", "none", "proxies to show the error of");
+    throw InputError(scene.file, "/proxies", "none", "proxies to show the error of");
   if (const std::string warning = warning_of(scene); !warning.empty())
     fmt::print(stderr, "warning: outside of what is safe (see tutu stability): {}\n", warning);
   return scene;
@@ -134,13 +135,13 @@ std::optional<Draped> other_scene(const PlayOptions& options, const Draped& firs
     other.scene.scene = options.against;
     draped.scene = load(other);
   } else {
-    SceneDescription description = first.scene.description;
+    SceneDescription description = first.scene.description();
     override_setting(description, options.split, "--split");
     draped.scene = load_scene(description);
   }
-  const int frames = first.scene.description.frames_per_second, others = draped.scene.description.frames_per_second;
+  const int frames = first.scene.settings.frames_per_second, others = draped.scene.settings.frames_per_second;
   if (frames != others)
-    throw InputError(draped.scene.description.file.string(), "/solver/frames_per_second", std::to_string(others),
+    throw InputError(draped.scene.file, "/solver/frames_per_second", std::to_string(others),
                      std::to_string(frames) + ", as the first scene has");
   if (!options.split.empty()) { // the same start, so that what differs is the setting's doing
     draped.start = first.start;
@@ -152,7 +153,7 @@ std::optional<Draped> other_scene(const PlayOptions& options, const Draped& firs
   return draped;
 }
 
-int frames_to_play(const PlayOptions& options, const Scene& scene) {
+int frames_to_play(const PlayOptions& options, const LoadedScene& scene) {
   return options.frames ? *options.frames : frames_of(scene);
 }
 

@@ -1,18 +1,19 @@
 // Playing without a window: films, pictures, figures.
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
-#include "src/export/png.h"
-#include "src/export/video.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
-#include "src/render/image_text.h"
-#include "src/render/offscreen.h"
-#include "src/scene/posed_body.h"
-#include "src/scene/run_stats.h"
-#include "src/scene/scene_view.h"
-#include "src/scene/why.h"
+#include "src/measure/run_stats.h"
+#include "src/run/posed_body.h"
+#include "src/scene/load.h"
+#include "src/view/render/image_text.h"
+#include "src/view/render/offscreen.h"
+#include "src/view/render/png.h"
+#include "src/view/render/video.h"
+#include "src/view/show/scene_view.h"
+#include "src/view/show/why.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -60,7 +61,7 @@ private:
 class Pictures {
 public:
   /// `other`: beside it, or null.
-  Pictures(const PlayOptions& options, const Scene& scene, const Scene* other)
+  Pictures(const PlayOptions& options, const LoadedScene& scene, const LoadedScene* other)
       : at_(options.at), stem_(scene.name()), layers_(layers_of(options)) {
     if (options.no_pictures) return;
     auto [width, height] = size_of(options.size);
@@ -81,7 +82,7 @@ public:
     out_ = options.out;
     const bool film = at_.empty() && (out_.empty() ? ffmpeg_available() : out_.extension() == ".mp4");
     if (out_.empty()) out_ = film ? stem_ + ".mp4" : at_.empty() ? stem_ + "-frames" : ".";
-    if (film) video_.emplace(out_, width, height, scene.description.frames_per_second);
+    if (film) video_.emplace(out_, width, height, scene.settings.frames_per_second);
     else fs::create_directories(out_);
     if (!film && at_.empty() && options.out.empty())
       fmt::print(stderr, "note: no ffmpeg here, so the frames go to {}/\n", out_.string());
@@ -137,7 +138,7 @@ void tell_recoveries(const SessionTroubles& troubles) {
 /// What --why asks, looked for while the run goes on.
 class Explainer {
 public:
-  Explainer(const Scene& scene, const std::string& text, int frames)
+  Explainer(const LoadedScene& scene, const std::string& text, int frames)
       : scene_(&scene), address_(why_address(scene, text, frames)) {}
 
   int frame() const { return address_.frame; }
@@ -155,7 +156,7 @@ public:
   }
 
 private:
-  const Scene* scene_;
+  const LoadedScene* scene_;
   WhyAddress address_;
   FrameState before_, now_;
   std::optional<FirstWrong> first_wrong_;
@@ -165,7 +166,7 @@ private:
 } // namespace
 
 int play_headless(const PlayOptions& options, const Draped& first, const Draped* other) {
-  const Scene& scene = first.scene;
+  const LoadedScene& scene = first.scene;
   Session session(scene);
   session.start(first.start);
   std::optional<Session> beside;

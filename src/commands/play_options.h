@@ -1,9 +1,10 @@
 // What `tutu play` was asked for, and its two ways of doing it.
 #pragma once
 
-#include "src/commands/scene_options.h"
-#include "src/render/frame_view.h"
-#include "src/scene/layers.h"
+#include "src/options/scene_options.h"
+#include "src/scene/load.h"
+#include "src/view/render/frame_view.h"
+#include "src/view/show/layers.h"
 
 namespace tutu::app {
 
@@ -27,12 +28,12 @@ struct PlayOptions {
 Layers layers_of(const PlayOptions& options);
 
 /// The scene file with all options applied; notes of the loading, and warnings, go to stderr.
-Scene load(const PlayOptions& options);
+LoadedScene load(const PlayOptions& options);
 
 /// A scene with the start of its garments.
 struct Draped {
-  Scene scene;
-  std::vector<std::vector<Vec3>> start;
+  LoadedScene scene;
+  GarmentPositions start;
 };
 
 /// The other scene that --against or --split name; none without them, or when it does not settle (which was said). Of
@@ -45,7 +46,7 @@ std::optional<Draped> other_scene(const PlayOptions& options, const Draped& firs
 std::pair<int, int> size_of(const std::string& text);
 
 /// Once through the motion, or options.frames.
-int frames_to_play(const PlayOptions& options, const Scene& scene);
+int frames_to_play(const PlayOptions& options, const LoadedScene& scene);
 
 /// Both return the exit status. `other`: with is_split only.
 int play_headless(const PlayOptions& options, const Draped& first, const Draped* other);

@@ -1,12 +1,13 @@
 // Playing in a window, and what it showed when it closed.
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
-#include "src/proxy_edit/proxy_edit_mode.h"
-#include "src/scene/split_player.h"
-#include "src/viewer/recent_files.h"
-#include "src/viewer/viewer.h"
+#include "src/scene/load.h"
+#include "src/view/play/split_player.h"
+#include "src/view/play/viewer.h"
+#include "src/view/proxy_edit/proxy_edit_mode.h"
+#include "src/view/window/recent_files.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -87,9 +88,9 @@ int play_in_window(const PlayOptions& options, Draped first, std::optional<Drape
   std::string message, why = options.why;
   ViewerOptions viewer = viewer_options(options);
   for (;;) {
-    remember_file(first.scene.description.file);
+    remember_file(first.scene.files.file);
     viewer.recent = recent_files();
-    viewer.browse = first.scene.description.file.parent_path();
+    viewer.browse = first.scene.files.file.parent_path();
     viewer.message = message;
     const int frames = frames_to_play(options, first.scene);
     ViewerEnd end;

@@ -1,13 +1,14 @@
 // tutu pose: the pose editor.
 #include "rig/character.h"
-#include "rig/clip_file.h"
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/import/import.h"
+#include "rig/io/clip_file.h"
+#include "rig/io/file_io.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/export/png.h"
-#include "src/pose/joint_limits_file.h"
-#include "src/pose/pose_window.h"
+#include "src/options/scene_options.h"
+#include "src/view/pose/joint_limits_file.h"
+#include "src/view/pose/pose_window.h"
+#include "src/view/render/png.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -1,12 +1,13 @@
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/export/chart.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
-#include "src/stability/map_files.h"
-#include "src/stability/margin.h"
+#include "src/options/scene_options.h"
+#include "src/scene/load.h"
+#include "src/study/report/gnuplot_chart.h"
+#include "src/study/stability/map_files.h"
+#include "src/study/stability/margin.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,13 +55,12 @@ int run(const Options& options) {
   if (!options.no_pictures) require_chart(folder / "map.svg"); // no gnuplot is told before long work
   if (!options.json.empty()) (void)PendingFile(options.json);
   catch_interrupt();
-  Scene scene = options.scene.load();
-  if (options.fixed_substeps) scene.description.adaptive_substeps = false;
-  if (scene.garments.empty())
-    throw InputError(scene.description.file.string(), "/garments", "none", "a garment to run");
-  const SceneSetting setting = setting_of(scene);
+  LoadedScene scene = options.scene.load();
+  if (options.fixed_substeps) scene.settings.adaptive_substeps = false;
+  if (scene.garments.empty()) throw InputError(scene.file, "/garments", "none", "a garment to run");
+  const SceneSetting setting = scene_setting(scene);
   if (std::isinf(stiffest(setting)->step_limit))
-    throw InputError(scene.description.file.string(), "/garments", "every particle held", "a garment that moves");
+    throw InputError(scene.file, "/garments", "every particle held", "a garment that moves");
   fs::create_directories(folder);
   (void)PendingFile(folder / "cells.csv");
   const auto start = draped_start(scene);

@@ -1,12 +1,14 @@
 // tutu validate: how far a scene's proxies, and its cloth, are from the true body.
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
+#include "src/base/interrupt.h"
+#include "src/base/progress.h"
 #include "src/commands/commands.h"
-#include "src/commands/scene_options.h"
-#include "src/interrupt.h"
-#include "src/progress.h"
-#include "src/report/validation_html.h"
-#include "src/scene/validation.h"
+#include "src/measure/validation.h"
+#include "src/options/scene_options.h"
+#include "src/scene/load.h"
+#include "src/study/report/validation_html.h"
+#include "src/view/show/heat_maps.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -32,16 +34,16 @@ int run(const Options& options) {
   for (const std::string& file : {options.json, options.html})
     if (!file.empty()) (void)PendingFile(file); // a place that cannot be written is told now
   catch_interrupt();
-  const Scene scene = options.scene.load();
+  const LoadedScene scene = options.scene.load();
   if (options.reach && scene.garments.empty())
-    throw InputError("", "--reach", scene.description.file.string() + " without garments", "a scene with garments");
+    throw InputError("", "--reach", scene.file + " without garments", "a scene with garments");
 
   ValidationOptions what;
   what.every = options.every;
   what.samples = options.samples;
   if (options.tolerance_mm) what.tolerance = 1e-3 * *options.tolerance_mm;
   what.threads = options.scene.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
-  std::optional<std::vector<std::vector<Vec3>>> start;
+  std::optional<GarmentPositions> start;
   if (!options.no_cloth && !scene.garments.empty()) {
     start = draped_start(scene);
     if (!start) return k_not_met;

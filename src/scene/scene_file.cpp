@@ -1,6 +1,6 @@
 #include "src/scene/scene_file.h"
 
-#include "rig/json_file.h"
+#include "rig/io/json_file.h"
 
 namespace tutu::app {
 namespace {
@@ -118,22 +118,23 @@ SceneDescription read_scene(const fs::path& file) {
     solver->only_keys(
         {"name", "substeps", "adaptive_substeps", "frames_per_second", "threads", "passes", "double_precision"});
     if (const auto name = solver->find("name"))
-      scene.solver = cloth::solver_named(name->string_among(cloth::k_solver_names));
-    if (const auto substeps = solver->find("substeps")) scene.substeps = substeps->integer_in(1, 10000);
-    if (const auto adaptive = solver->find("adaptive_substeps")) scene.adaptive_substeps = adaptive->boolean();
-    if (const auto threads = solver->find("threads")) scene.threads = threads->integer_in(1, k_most_threads);
-    if (const auto passes = solver->find("passes")) scene.passes = passes->integer_in(1, 100);
-    if (const auto precise = solver->find("double_precision")) scene.double_precision = precise->boolean();
-    if (const auto rate = solver->find("frames_per_second")) scene.frames_per_second = rate->integer_in(1, 10000);
+      scene.settings.solver = cloth::solver_named(name->string_among(cloth::k_solver_names));
+    if (const auto substeps = solver->find("substeps")) scene.settings.substeps = substeps->integer_in(1, 10000);
+    if (const auto adaptive = solver->find("adaptive_substeps")) scene.settings.adaptive_substeps = adaptive->boolean();
+    if (const auto threads = solver->find("threads")) scene.settings.threads = threads->integer_in(1, k_most_threads);
+    if (const auto passes = solver->find("passes")) scene.settings.passes = passes->integer_in(1, 100);
+    if (const auto precise = solver->find("double_precision")) scene.settings.double_precision = precise->boolean();
+    if (const auto rate = solver->find("frames_per_second"))
+      scene.settings.frames_per_second = rate->integer_in(1, 10000);
   }
   if (const auto collision = json.find("collision")) {
     collision->only_keys({"backend", "self_collision", "features", "swept"});
     if (const auto backend = collision->find("backend"))
-      scene.backend = proxies::backend_named(backend->string_among(proxies::k_backend_names));
-    if (const auto self = collision->find("self_collision")) scene.self_collision = self->boolean();
+      scene.settings.backend = proxies::backend_named(backend->string_among(proxies::k_backend_names));
+    if (const auto self = collision->find("self_collision")) scene.settings.self_collision = self->boolean();
     if (const auto features = collision->find("features"))
-      scene.features = cloth::contact_features_named(features->string_among(cloth::k_contact_features_names));
-    if (const auto swept = collision->find("swept")) scene.swept = swept->boolean();
+      scene.settings.features = cloth::contact_features_named(features->string_among(cloth::k_contact_features_names));
+    if (const auto swept = collision->find("swept")) scene.settings.swept = swept->boolean();
   }
   if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);
   else scene.drape = fs::path(file).replace_extension(".drape.json");

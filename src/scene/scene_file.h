@@ -1,11 +1,10 @@
 // Scenes on disk: JSON, schema in assets/schema/scene.schema.json. Paths in a scene are relative to the scene's folder.
 #pragma once
 
-#include "cloth/solver.h"
-#include "proxies/collision_query.h"
-#include "rig/bvh.h"
-#include "rig/clip_file.h"
+#include "rig/io/bvh.h"
+#include "rig/io/clip_file.h"
 #include "rig/skin.h"
+#include "src/run/settings.h"
 
 #include <filesystem>
 #include <map>
@@ -33,8 +32,6 @@ struct MocapMotion {
 };
 using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts, MocapMotion>;
 
-inline constexpr int k_most_threads = 256;
-
 struct GarmentEntry {
   std::filesystem::path file;
   Vec3 scale = Vec3::Ones();  ///< per axis, about the model's origin
@@ -42,9 +39,9 @@ struct GarmentEntry {
   double resolution = 1.0;    ///< times the garment's own cells a side
 };
 
-/// A scene as authored.
-struct SceneDescription {
-  std::filesystem::path file;
+/// The files of a scene, and what is to be read of them.
+struct SceneFiles {
+  std::filesystem::path file; ///< the scene's own
   std::filesystem::path character;
   int max_influences = 4;
   rig::Skinning skinning = rig::Skinning::linear;
@@ -52,19 +49,13 @@ struct SceneDescription {
   std::optional<rig::Interpolation> interpolation; ///< instead of the clip's own
   std::optional<std::filesystem::path> proxies;
   std::vector<GarmentEntry> garments;
+  std::filesystem::path drape; ///< where the settled garments are kept
+};
+
+/// A scene as authored.
+struct SceneDescription : SceneFiles {
   std::optional<double> ground_height = 0.0; ///< m; none = no ground
-  int frames_per_second = 60;
-  cloth::SolverKind solver = cloth::SolverKind::xpbd;
-  int substeps = 10;             ///< a frame,
-  bool adaptive_substeps = true; ///< and more where something moves too fast for them
-  int threads = 1;               ///< that step garments side by side; never more than there are garments
-  proxies::Backend backend = proxies::Backend::hybrid;
-  bool self_collision = false; ///< of each garment with itself; solver xpbd only
-  cloth::ContactFeatures features = cloth::ContactFeatures::automatic; ///< what of the cloth meets colliders
-  bool swept = true;             ///< contacts by time of impact where something moves far
-  int passes = 1;                ///< over the constraints, a substep; solver xpbd only
-  bool double_precision = false; ///< of the solver's kernels
-  std::filesystem::path drape;   ///< where the settled garments are kept
+  RunSettings settings;
 };
 
 /// Throws InputError with file, JSON pointer, found and expected.

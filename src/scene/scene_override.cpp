@@ -29,16 +29,16 @@ void override_setting(SceneDescription& description, const std::string& assignme
       refuse(fmt::format("{}, one of: {}", key, fmt::join(names, ", ")));
     return value;
   };
-  if (key == "solver") description.solver = cloth::solver_named(among(cloth::k_solver_names));
-  else if (key == "substeps") description.substeps = whole(1, 10000);
-  else if (key == "passes") description.passes = whole(1, 100);
-  else if (key == "adaptive_substeps") description.adaptive_substeps = yes();
-  else if (key == "double_precision") description.double_precision = yes();
-  else if (key == "backend") description.backend = proxies::backend_named(among(proxies::k_backend_names));
+  if (key == "solver") description.settings.solver = cloth::solver_named(among(cloth::k_solver_names));
+  else if (key == "substeps") description.settings.substeps = whole(1, 10000);
+  else if (key == "passes") description.settings.passes = whole(1, 100);
+  else if (key == "adaptive_substeps") description.settings.adaptive_substeps = yes();
+  else if (key == "double_precision") description.settings.double_precision = yes();
+  else if (key == "backend") description.settings.backend = proxies::backend_named(among(proxies::k_backend_names));
   else if (key == "features")
-    description.features = cloth::contact_features_named(among(cloth::k_contact_features_names));
-  else if (key == "swept") description.swept = yes();
-  else if (key == "self_collision") description.self_collision = yes();
+    description.settings.features = cloth::contact_features_named(among(cloth::k_contact_features_names));
+  else if (key == "swept") description.settings.swept = yes();
+  else if (key == "self_collision") description.settings.self_collision = yes();
   else if (key == "proxies" && value == "none") description.proxies.reset();
   else if (key == "proxies") {
     if (!std::filesystem::is_regular_file(value)) refuse("a proxies file, or none");

@@ -1,6 +1,6 @@
 #include "src/scene/scene_write.h"
 
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
 
 #include <nlohmann/json.hpp>
 
@@ -75,14 +75,17 @@ void write_scene(const SceneDescription& d, const fs::path& file, const std::str
   for (const GarmentEntry& entry : d.garments) json["garments"].push_back(garment_json(entry, paths));
   if (!d.ground_height) json["ground"] = false;
   else json["ground"] = {{"height", *d.ground_height}};
-  json["solver"] = {
-      {"name", cloth::name_of(d.solver)},         {"substeps", d.substeps}, {"adaptive_substeps", d.adaptive_substeps},
-      {"frames_per_second", d.frames_per_second}, {"threads", d.threads},   {"passes", d.passes},
-      {"double_precision", d.double_precision}};
-  json["collision"] = {{"backend", proxies::k_backend_names[static_cast<std::size_t>(d.backend)]},
-                       {"self_collision", d.self_collision},
-                       {"features", cloth::k_contact_features_names[static_cast<std::size_t>(d.features)]},
-                       {"swept", d.swept}};
+  json["solver"] = {{"name", cloth::name_of(d.settings.solver)},
+                    {"substeps", d.settings.substeps},
+                    {"adaptive_substeps", d.settings.adaptive_substeps},
+                    {"frames_per_second", d.settings.frames_per_second},
+                    {"threads", d.settings.threads},
+                    {"passes", d.settings.passes},
+                    {"double_precision", d.settings.double_precision}};
+  json["collision"] = {{"backend", proxies::k_backend_names[static_cast<std::size_t>(d.settings.backend)]},
+                       {"self_collision", d.settings.self_collision},
+                       {"features", cloth::k_contact_features_names[static_cast<std::size_t>(d.settings.features)]},
+                       {"swept", d.settings.swept}};
   json["drape"] = paths(d.drape);
   write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
 }

@@ -1,5 +1,5 @@
 // The true body, 25,000 vertices: what a frame of questions costs, the refit included, and each part alone.
-#include "proxies/body_mesh.h"
+#include "proxies/body/body_mesh.h"
 #include "tests/support/solids.h"
 
 #include <benchmark/benchmark.h>

@@ -1,6 +1,6 @@
 // dancer-skirt on tutu and on Bullet, in one process, a frame of each in turn, with the ratio of their times.
 //   bench_bullet [N ...]      particles a side; 30 and 64 when left out
-#include "src/bench/bench_metrics.h"
+#include "src/measure/frame_metrics.h"
 #include "tests/bench/bullet_skirt.h"
 
 #include <charconv>

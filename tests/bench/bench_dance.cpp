@@ -1,5 +1,7 @@
 // The default dance, a frame at a time, for each backend: posing, colliders, both garments, and the skin.
-#include "src/scene/session.h"
+#include "src/run/session.h"
+#include "src/scene/load.h"
+#include "src/scene/saved_drape.h"
 
 #include <benchmark/benchmark.h>
 
@@ -10,8 +12,8 @@ using namespace tutu;
 void dance(benchmark::State& state, proxies::Backend backend) {
   app::SceneDescription description =
       app::read_scene(std::filesystem::path(TUTU_SOURCE_DIR) / "assets/scenes/dance.json");
-  description.backend = backend;
-  const app::Scene scene = app::load_scene(description);
+  description.settings.backend = backend;
+  const app::LoadedScene scene = app::load_scene(description);
   bool stale = false;
   const auto start = app::saved_drape(scene, &stale);
   if (!start) return state.SkipWithError("no drape of the dance: run tutu drape");

@@ -1,11 +1,11 @@
 // What a frame of collision queries costs, backend against backend, and what one question costs.
-#include "proxies/box_list.h"
-#include "proxies/broad_phase.h"
-#include "proxies/collision_query.h"
-#include "proxies/feature_contact.h"
-#include "proxies/narrow_phase.h"
-#include "proxies/signed_distance.h"
-#include "proxies/sweep.h"
+#include "proxies/distance/feature_contact.h"
+#include "proxies/distance/signed_distance.h"
+#include "proxies/motion/sweep.h"
+#include "proxies/query/collision_query.h"
+#include "proxies/query/detail/box_list.h"
+#include "proxies/query/detail/broad_phase.h"
+#include "proxies/query/detail/narrow_phase.h"
 #include "tests/support/collider_scenes.h"
 
 #include <algorithm>

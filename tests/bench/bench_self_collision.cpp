@@ -1,7 +1,7 @@
 // What self-collision costs, a particle and substep: cloth that meets nothing (hanging, its upper edge swung to and
 // fro), and a sheet folded in two that lies on itself.
 #include "cloth/solver.h"
-#include "tests/cloth/two_layers.h"
+#include "tests/cloth/contact/two_layers.h"
 
 #include <benchmark/benchmark.h>
 

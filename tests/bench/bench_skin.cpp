@@ -1,6 +1,6 @@
 // Skinning a body of 25 000 vertices, on every SIMD target this processor has.
+#include "rig/detail/skin_kernel.h"
 #include "rig/skin.h"
-#include "rig/skin_kernel.h"
 
 #include <benchmark/benchmark.h>
 #include <hwy/targets.h>

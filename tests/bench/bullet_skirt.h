@@ -1,7 +1,7 @@
 // The standard scene "dancer-skirt" on Bullet's soft bodies, to be run beside tutu's in one process.
 #pragma once
 
-#include "src/bench/dancer_skirt.h"
+#include "src/study/bench/dancer_skirt.h"
 
 #include <memory>
 #include <span>

@@ -1,6 +1,6 @@
 #include "cloth/adaptive_substeps.h"
-#include "cloth/tolerances.h"
-#include "proxies/signed_distance.h"
+#include "cloth/state/tolerances.h"
+#include "proxies/distance/signed_distance.h"
 #include "tests/support/collider_scenes.h"
 
 #include <gmock/gmock.h>

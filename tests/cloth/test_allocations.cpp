@@ -1,8 +1,8 @@
 // Nothing allocates in a step once it is warm: by counting.
 #include "cloth/adaptive_substeps.h"
+#include "cloth/contact/self_collision.h"
 #include "cloth/recovery.h"
-#include "cloth/self_collision.h"
-#include "tests/cloth/two_layers.h"
+#include "tests/cloth/contact/two_layers.h"
 #include "tests/support/counted_allocations.h"
 #include "tests/support/swinging_limbs.h"
 #include "tests/support/woven_cases.h"
@@ -55,7 +55,7 @@ TEST(SolverAllocations, NoneWithSeamsAndOtherBackends) {
   SolverOptions options;
   EXPECT_EQ(allocations_of_a_warm_run(options, proxies::Backend::hybrid, 0.6), 0);
   EXPECT_EQ(allocations_of_a_warm_run(options, proxies::Backend::brute, 0.6), 0);
-  options.kind = SolverKind::mass_spring;
+  options.solver = SolverKind::mass_spring;
   EXPECT_EQ(allocations_of_a_warm_run(options, proxies::Backend::hybrid, 0.6), 0);
 }
 

@@ -1,6 +1,7 @@
+#include "cloth/garment/springs.h"
 #include "cloth/mass_spring.h"
 #include "cloth/metrics.h"
-#include "proxies/signed_distance.h"
+#include "proxies/distance/signed_distance.h"
 
 #include <gtest/gtest.h>
 #include <numeric>

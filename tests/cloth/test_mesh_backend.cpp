@@ -1,7 +1,7 @@
 // Cloth against the true body.
+#include "cloth/detail/solver_parts.h"
 #include "cloth/recovery.h"
-#include "cloth/solver_parts.h"
-#include "cloth/tolerances.h"
+#include "cloth/state/tolerances.h"
 #include "tests/support/solids.h"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(MeshBackend, EverySolverKeepsEveryParticleOutside) {
   for (const SolverKind kind : {SolverKind::xpbd, SolverKind::mass_spring}) {
     Ball ball;
     const auto query = ball.query();
-    const auto solver = make_solver(garment, {.kind = kind});
+    const auto solver = make_solver(garment, {.solver = kind});
     const std::vector<double> friction = {0.5, 0.3};
     FrameInput input;
     input.friction = friction;

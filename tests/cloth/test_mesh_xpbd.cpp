@@ -1,5 +1,6 @@
-#include "cloth/colouring.h"
-#include "cloth/dihedral.h"
+#include "cloth/detail/colouring.h"
+#include "cloth/garment/dihedral.h"
+#include "cloth/garment/springs.h"
 #include "cloth/mesh_xpbd.h"
 #include "cloth/metrics.h"
 #include "tests/support/mesh_sheet.h"
@@ -290,7 +291,7 @@ TEST(MakeSolver, TakesTheOneForTrianglesWhereThereAreNoRows) {
   const Garment garment = upright(5, {}, true);
   EXPECT_NE(dynamic_cast<MeshXpbd<float>*>(make_solver(garment, {}).get()), nullptr);
   EXPECT_NE(dynamic_cast<MeshXpbd<double>*>(make_solver(garment, {.double_precision = true}).get()), nullptr);
-  const auto springs = make_solver(garment, {.kind = SolverKind::mass_spring});
+  const auto springs = make_solver(garment, {.solver = SolverKind::mass_spring});
   run(*springs, garment, {}, 3);
 }
 

@@ -1,7 +1,7 @@
-#include "cloth/drape_file.h"
+#include "cloth/garment/drape_file.h"
 #include "cloth/metrics.h"
 #include "rig/error.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
 #include "tests/support/paths.h"
 
 #include <gtest/gtest.h>

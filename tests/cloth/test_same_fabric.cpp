@@ -1,9 +1,9 @@
 // The same fabric looks the same on a coarse and a fine grid, at 30 to 120 frames/s, in 5 to 20 substeps: by how far it
 // sags, gives and droops, not by eye.
-#include "cloth/garment_file.h"
+#include "cloth/garment/garment_file.h"
 #include "cloth/metrics.h"
 #include "cloth/solver.h"
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
 #include "tests/support/paths.h"
 
 #include <gtest/gtest.h>

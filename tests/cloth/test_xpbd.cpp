@@ -1,3 +1,4 @@
+#include "cloth/garment/springs.h"
 #include "cloth/metrics.h"
 #include "cloth/xpbd.h"
 

@@ -20,7 +20,7 @@ std::uint64_t hash_of(const Garment& garment, const SolverOptions& options, prox
   const auto query = proxies::make_query(backend);
   test::SwingingLimbs limbs(garment, 40);
   for (int frame = 0; frame < frames; ++frame) {
-    FrameInput input = limbs.advance(options.kind == SolverKind::mass_spring ? 30 : 8);
+    FrameInput input = limbs.advance(options.solver == SolverKind::mass_spring ? 30 : 8);
     input.substeps = plan_substeps(input, extent_of(solver.particles()), garment.fabric.contact_offset()).substeps;
     if (solver.step(input, *query)) return 0;
   }
@@ -49,6 +49,6 @@ int main() {
       for (const SolverKind kind : {SolverKind::mass_spring, SolverKind::xpbd})
         std::printf("%s, %s, %s: %016" PRIx64 "\n", one.name.c_str(), std::string(name_of(kind)).c_str(),
                     std::string(proxies::k_backend_names[static_cast<std::size_t>(backend)]).c_str(),
-                    hash_of(one.garment, {.kind = kind}, backend, 3));
+                    hash_of(one.garment, {.solver = kind}, backend, 3));
   }
 }

@@ -1,8 +1,8 @@
 #include "proxies/proxy_file.h"
 
 #include "rig/error.h"
-#include "rig/file_io.h"
-#include "rig/json_file.h"
+#include "rig/io/file_io.h"
+#include "rig/io/json_file.h"
 #include "tests/support/collider_scenes.h"
 #include "tests/support/paths.h"
 

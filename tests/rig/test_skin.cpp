@@ -1,5 +1,5 @@
+#include "rig/detail/skin_kernel.h"
 #include "rig/skin.h"
-#include "rig/skin_kernel.h"
 #include "tests/rig/random_skeleton.h"
 
 #include <algorithm>

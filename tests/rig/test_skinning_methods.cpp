@@ -1,6 +1,6 @@
 // Dual quaternions and centres of rotation: closed forms, twins, and what they are for: the volume of bent limbs.
 #include "rig/error.h"
-#include "rig/mannequin.h"
+#include "rig/mannequin/mannequin.h"
 #include "tests/rig/random_skeleton.h"
 
 #include <cmath>

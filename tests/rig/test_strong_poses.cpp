@@ -1,4 +1,5 @@
 #include "rig/character.h"
+#include "rig/import/import.h"
 #include "rig/strong_poses.h"
 #include "tests/support/paths.h"
 

@@ -1,7 +1,7 @@
 // The twin of BodyMesh: every triangle asked, by other formulas, in long double.
 #pragma once
 
-#include "proxies/body_mesh.h"
+#include "proxies/body/body_mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // A body whose shape is known: a capsule as a closed mesh of triangles, its vertices on the capsule.
 #pragma once
 
-#include "proxies/signed_distance.h"
+#include "proxies/distance/signed_distance.h"
 #include "rig/mesh.h"
 
 #include <cmath>

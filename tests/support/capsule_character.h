@@ -1,8 +1,8 @@
 // A whole character file around a body whose shape is known, and scenes that put proxies on it.
 #pragma once
 
-#include "rig/file_io.h"
-#include "rig/mannequin.h"
+#include "rig/io/file_io.h"
+#include "rig/mannequin/mannequin.h"
 #include "tests/support/capsule_body.h"
 
 #include <filesystem>

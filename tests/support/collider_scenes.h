@@ -1,7 +1,7 @@
 // Colliders and particles for tests and benchmarks: one builder for both.
 #pragma once
 
-#include "proxies/collider_set.h"
+#include "proxies/motion/collider_set.h"
 
 #include <cmath>
 #include <numbers>

@@ -1,8 +1,9 @@
 // The camera that the window of `tutu play` begins with.
 #pragma once
 
-#include "src/scene/scene_view.h"
-#include "src/viewer/orbit.h"
+#include "src/run/drape.h"
+#include "src/view/show/scene_view.h"
+#include "src/view/window/orbit.h"
 
 namespace tutu::test {
 

@@ -1,7 +1,7 @@
 // A sheet of nearly equilateral triangles: what an imported, remeshed garment is like.
 #pragma once
 
-#include "cloth/garment.h"
+#include "cloth/garment/garment.h"
 
 #include <cmath>
 #include <random>

@@ -2,7 +2,7 @@
 // test.
 #pragma once
 
-#include "src/render/gl_context.h"
+#include "src/view/render/gl_context.h"
 
 #include <gtest/gtest.h>
 #include <stdexcept>

@@ -1,8 +1,8 @@
 // Pictures back from disk, and how much of them differs.
 #pragma once
 
-#include "rig/file_io.h"
-#include "src/render/image.h"
+#include "rig/io/file_io.h"
+#include "src/view/render/image.h"
 
 #include <cstdlib>
 #include <filesystem>

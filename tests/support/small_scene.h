@@ -1,7 +1,7 @@
 // A scene that is run in a moment: a sheet, held along one edge, that lies on the end of a capsule.
 #pragma once
 
-#include "rig/file_io.h"
+#include "rig/io/file_io.h"
 #include "tests/support/capsule_character.h"
 
 #include <filesystem>

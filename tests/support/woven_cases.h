@@ -1,8 +1,8 @@
 // Garments of threads for tests: closed and open, of awkward counts, pinned anywhere.
 #pragma once
 
-#include "cloth/garment.h"
-#include "cloth/woven_sheet.h"
+#include "cloth/garment/garment.h"
+#include "cloth/woven/sheet.h"
 #include "tests/support/collider_scenes.h"
 
 #include <random>

@@ -2,12 +2,12 @@
 // formulas. Of the kernel's layout it knows the order only: block after block, in each the columns `blocks` apart.
 #pragma once
 
-#include "cloth/garment.h"
-#include "cloth/garment_elements.h"
-#include "cloth/tolerances.h"
-#include "cloth/woven_kernel.h"
-#include "proxies/feature_contact.h"
-#include "proxies/signed_distance.h"
+#include "cloth/garment/elements.h"
+#include "cloth/garment/garment.h"
+#include "cloth/state/tolerances.h"
+#include "cloth/woven/kernel.h"
+#include "proxies/distance/feature_contact.h"
+#include "proxies/distance/signed_distance.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,5 +1,5 @@
 // One query asked from several threads at once.
-#include "proxies/collision_query.h"
+#include "proxies/query/collision_query.h"
 #include "tests/support/collider_scenes.h"
 
 #include <gmock/gmock.h>

@@ -1,5 +1,6 @@
 // A run on a thread of its own, watched and steered from another: the bits are those of a session.
-#include "src/scene/simulation.h"
+#include "src/run/simulation.h"
+#include "src/scene/load.h"
 #include "tests/support/paths.h"
 #include "tests/support/small_scene.h"
 
@@ -23,8 +24,8 @@ protected:
   }
 
   std::filesystem::path folder_;
-  Scene scene_;
-  std::vector<std::vector<Vec3>> start_;
+  LoadedScene scene_;
+  GarmentPositions start_;
 };
 
 TEST_F(SimulationThread, EveryFrameHasTheBitsOfASession) {

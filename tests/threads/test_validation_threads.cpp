@@ -1,6 +1,7 @@
 // Frames measured side by side: the same figures as one after the other.
-#include "src/report/validation_json.h"
-#include "src/scene/validation.h"
+#include "src/measure/validation.h"
+#include "src/scene/load.h"
+#include "src/study/report/validation_json.h"
 #include "tests/support/capsule_character.h"
 #include "tests/support/paths.h"
 
@@ -22,7 +23,7 @@ TEST(Validation, FramesSideBySideGiveTheSameFigures) {
     {"time": 0.2, "joints": {"Hips": {"rotation": [0, 0.5, 0, 0.8660254037844386]}}}]})");
   write_file(folder / "proxies.json", proxies_json({{trunk.a, trunk.b, 0.11}}));
   write_file(folder / "scene.json", R"({"character": "body.dae", "motion": "turn.json", "proxies": "proxies.json"})");
-  const Scene scene = load_scene(read_scene(folder / "scene.json"));
+  const LoadedScene scene = load_scene(read_scene(folder / "scene.json"));
   ValidationOptions options;
   options.samples = 2000;
   const auto figures = [&](int threads) {

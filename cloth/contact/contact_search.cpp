@@ -1,0 +1,84 @@
+#include "cloth/contact/contact_search.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tutu::cloth {
+
+void ContactSearch::begin_frame(proxies::CollisionQuery& query, const proxies::SweptColliders& colliders,
+                                const Particles& particles, double seconds) {
+  colliders_ = colliders;
+  double fastest = 0.0; // squared m/s
+  for (const Vec3& v : particles.velocities) fastest = std::max(fastest, v.squaredNorm());
+  margin_ = k_least_margin + k_margin_growth * std::sqrt(fastest) * seconds;
+  placed_.assign(colliders.start.begin(), colliders.start.end());
+  placed_at_ = 0.0;
+  seconds_ = seconds;
+  body_way_ = 0.0;
+  for (std::size_t v = 0; v < colliders.body_start.size(); ++v)
+    body_way_ = std::max(body_way_, static_cast<double>((colliders.body_end[v] - colliders.body_start[v]).norm()));
+  find_candidates(query, particles);
+}
+
+void ContactSearch::find_candidates(proxies::CollisionQuery& query, const Particles& particles) {
+  query.find_candidates(colliders_, particles.positions, offset_ + margin_, candidates_);
+  wake_.assign(candidates_.colliders.size(), 0.0);
+  particle_travel_.assign(particles.positions.size(), 0.0);
+  // Of proxies, the ground, which stays at 0, and the true body.
+  collider_travel_.assign(static_cast<std::size_t>(colliders_.body_index()) + 1, 0.0);
+  particle_way_.resize(particles.positions.size(), Vec3::Zero());
+  in_body_.resize(particles.positions.size(), 0);
+  seen_at_ = particles.positions;
+  ++counts_.searches;
+  counts_.candidates += static_cast<std::int64_t>(candidates_.colliders.size());
+}
+
+void ContactSearch::place(proxies::CollisionQuery& query, double s) {
+  placed_before_.swap(placed_);
+  since_before_ = s - placed_at_;
+  placed_at_ = s;
+  placed_.resize(placed_before_.size());
+  proxies::colliders_at(colliders_, s, placed_);
+  query.place(placed_, colliders_.ground);
+  for (std::size_t c = 0; c < placed_.size(); ++c) // no point of the capsule moves farther than its farther end
+    collider_travel_[c] +=
+        std::max((placed_[c].a - placed_before_[c].a).norm(), (placed_[c].b - placed_before_[c].b).norm());
+  query_ = &query;
+  if (!colliders_.has_body()) return;
+  query.place_body(colliders_, s);
+  collider_travel_[colliders_.body_index()] += since_before_ * body_way_;
+}
+
+double ContactSearch::bounded_push(int particle, int collider, const proxies::Contact& contact) {
+  const double needed = offset_ - contact.distance;
+  if (collider != colliders_.body_index()) return needed;
+  const double speed_step = since_before_ * (body_way_ + k_push_out_speed * seconds_);
+  const double most = in_body_[particle] ? std::max(0.0, speed_step - particle_way_[particle].dot(contact.normal))
+                                         : particle_way_[particle].norm() + speed_step;
+  in_body_[particle] = most < needed;
+  return std::min(needed, most);
+}
+
+void ContactSearch::account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned,
+                                   const Particles& particles) {
+  double farthest = 0.0;
+  for (int i = 0; i < particles.count(); ++i) {
+    particle_way_[i] = particles.positions[i] - seen_at_[i];
+    particle_travel_[i] += particle_way_[i].norm();
+    seen_at_[i] = particles.positions[i];
+    if (!pinned[i]) farthest = std::max(farthest, particle_travel_[i]);
+  }
+  if (farthest > margin_) {
+    margin_ = std::max(margin_, k_margin_growth * farthest);
+    find_candidates(query, particles);
+  }
+}
+
+Vec3 ContactSearch::surface_motion(int collider, const Vec3& point) const {
+  if (collider == colliders_.body_index()) return since_before_ * query_->body_way(point);
+  if (collider == colliders_.ground_index()) return Vec3::Zero();
+  const Vec3 spin = colliders_.spin.empty() ? Vec3(Vec3::Zero()) : Vec3(since_before_ * colliders_.spin[collider]);
+  return proxies::surface_motion(placed_before_[collider], placed_[collider], spin, point);
+}
+
+} // namespace tutu::cloth

@@ -1,0 +1,110 @@
+// Which particles meet which colliders, substep by substep; what they do then is the solver's business.
+#pragma once
+
+#include "cloth/garment/garment.h"
+#include "cloth/state/frame.h"
+#include "cloth/state/particles.h"
+#include "cloth/state/tolerances.h"
+#include "proxies/query/collision_query.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace tutu::cloth {
+
+/// Collision of one garment's particles with the colliders of a scene. Owns the memory that is reused from frame to
+/// frame.
+///
+/// Pairs that cannot have met since they were last asked are skipped, exactly: signed distance is 1-Lipschitz in the
+/// point and in the collider's motion, so a pair at distance d stays apart until particle and collider together have
+/// travelled d.
+///
+/// Out of the true body a particle is pushed in one substep by no more than both have moved, and k_push_out_speed
+/// besides; where that is not enough it began inside, and from then on comes out at that speed: it is not thrown.
+class ContactSearch {
+public:
+  /// `offset`: what particles keep from every surface, m >= 0 (Fabric::contact_offset).
+  explicit ContactSearch(double offset) : offset_(offset) {}
+
+  /// Broad phase for a frame of `seconds`. The spans must live until the next call.
+  void begin_frame(proxies::CollisionQuery& query, const proxies::SweptColliders& colliders, const Particles& particles,
+                   double seconds);
+
+  /// Puts the colliders to `s` in (0, 1] of the frame and calls on_contact(particle, collider, contact, push) for every
+  /// free particle nearer to one than the offset, by `push` = offset - distance > 0. Particles rise, and colliders for
+  /// each of them; each contact is found where the ones before it left the particle. on_contact moves it. `pinned` has
+  /// one entry a particle; pinned ones are left alone. `particles` are those of begin_frame, moved on.
+  template <class OnContact>
+  void for_each_contact(proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
+                        Particles& particles, const OnContact& on_contact);
+
+  /// How far the collider's surface has moved since the last substep where it is nearest to `point`, m.
+  Vec3 surface_motion(int collider, const Vec3& point) const;
+
+  const ContactCounts& counts() const { return counts_; }
+  BroadPhaseView broad_phase() const { return {{}, candidates_.begin, candidates_.colliders}; }
+
+private:
+  void find_candidates(proxies::CollisionQuery& query, const Particles& particles);
+  void place(proxies::CollisionQuery& query, double s);
+  void account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned, const Particles& particles);
+  double bounded_push(int particle, int collider, const proxies::Contact& contact);
+
+  double offset_ = 0.0;
+  double margin_ = 0.0;                         ///< m a particle may go before candidates are found anew
+  double placed_at_ = 0.0, since_before_ = 0.0; ///< of the frame: where placed_ is, and how far from placed_before_
+  proxies::SweptColliders colliders_;
+  std::vector<proxies::Capsule> placed_, placed_before_;
+  proxies::Candidates candidates_;
+  std::vector<double> wake_;                              ///< per candidate pair: travelled sum at which it may touch
+  std::vector<double> particle_travel_, collider_travel_; ///< m since the candidates were found
+  std::vector<Vec3> seen_at_;                             ///< where each particle was when it last reported its travel
+  std::vector<Vec3> particle_way_;                        ///< m in this substep
+  std::vector<std::uint8_t> in_body_;              ///< whether the last push left a particle inside the true body
+  double body_way_ = 0.0, seconds_ = 0.0;          ///< m that the true body's fastest vertex goes in the frame
+  const proxies::CollisionQuery* query_ = nullptr; ///< that colliders were last placed in
+  ContactCounts counts_;
+};
+
+template <class OnContact>
+void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
+                                     Particles& particles, const OnContact& on_contact) {
+  place(query, s);
+  account_travel(query, pinned, particles);
+  for (int i = 0; i < particles.count(); ++i) {
+    if (pinned[i]) continue;
+    for (int pair = candidates_.begin[i]; pair < candidates_.begin[i + 1]; ++pair) {
+      const int collider = candidates_.colliders[pair];
+      const double travelled = particle_travel_[i] + collider_travel_[collider];
+      if (travelled < wake_[pair]) continue;
+      const proxies::Contact contact = query.contact(particles.positions[i], collider);
+      ++counts_.queries;
+      if (contact.distance >= offset_) {
+        wake_[pair] = travelled + (contact.distance - offset_) - k_travel_slack;
+        if (collider == colliders_.body_index()) in_body_[i] = 0;
+        continue;
+      }
+      on_contact(i, collider, contact, bounded_push(i, collider, contact));
+      particle_travel_[i] += (particles.positions[i] - seen_at_[i]).norm();
+      seen_at_[i] = particles.positions[i];
+      ++counts_.contacts;
+    }
+    if (particle_travel_[i] <= margin_) continue;
+    // Pushed out of reach of what was looked for: ask the others too, this once. The next substep searches anew.
+    const std::span<const int> asked = candidates_.of(i);
+    for (int collider = 0; collider <= colliders_.body_index(); ++collider) {
+      if (collider == colliders_.ground_index() && !colliders_.ground) continue;
+      if (collider == colliders_.body_index() && !colliders_.has_body()) continue;
+      if (std::binary_search(asked.begin(), asked.end(), collider)) continue;
+      const proxies::Contact contact = query.contact(particles.positions[i], collider);
+      ++counts_.queries;
+      if (contact.distance >= offset_) continue;
+      on_contact(i, collider, contact, bounded_push(i, collider, contact));
+      ++counts_.contacts;
+    }
+  }
+}
+
+} // namespace tutu::cloth

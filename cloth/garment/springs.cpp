@@ -1,0 +1,34 @@
+#include "cloth/garment/springs.h"
+
+#include "cloth/state/tolerances.h"
+
+namespace tutu::cloth {
+
+std::optional<int> add_spring_forces(const Garment& garment, std::span<const Vec3> positions, std::span<Vec3> forces) {
+  std::optional<int> first_bad;
+  const int count = static_cast<int>(garment.springs.size());
+  for (int k = 0; k < count; ++k) {
+    const Spring& spring = garment.springs[k];
+    const Vec3 d = positions[spring.j] - positions[spring.i];
+    const double length = d.norm();
+    // Written so that a length that is not a number fails too.
+    if (!(length <= (1.0 + k_diverged_stretch) * spring.rest_length) && k < garment.structural_count && !first_bad)
+      first_bad = k;
+    if (!(length > 0.0)) continue; // two particles in one place: no direction, no force
+    const Vec3 force = (spring.stiffness * (length - spring.rest_length) / length) * d;
+    forces[spring.i] += force;
+    forces[spring.j] -= force;
+  }
+  return first_bad;
+}
+
+double elastic_energy(const Garment& garment, std::span<const Vec3> positions) {
+  double energy = 0.0;
+  for (const Spring& spring : garment.springs) {
+    const double extension = (positions[spring.j] - positions[spring.i]).norm() - spring.rest_length;
+    energy += 0.5 * spring.stiffness * extension * extension;
+  }
+  return energy;
+}
+
+} // namespace tutu::cloth

@@ -1,0 +1,279 @@
+// What holds a woven sheet together: springs, bending, whole warp threads. For woven_kernel.cpp alone.
+#if defined(TUTU_CLOTH_WOVEN_CONSTRAINTS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TUTU_CLOTH_WOVEN_CONSTRAINTS_INL_H
+#undef TUTU_CLOTH_WOVEN_CONSTRAINTS_INL_H
+#else
+#define TUTU_CLOTH_WOVEN_CONSTRAINTS_INL_H
+#endif
+
+#include "cloth/state/tolerances.h"
+#include "cloth/woven/vectors_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace tutu::cloth::HWY_NAMESPACE {
+
+// ---- springs
+
+template <class T> struct Limits {
+  Wide<T> per_h2;
+  Wide<T> broken; ///< length over rest length at which the run has diverged
+  Wide<T> bad;    ///< not 0 in lanes that have seen such an edge
+};
+
+/// Edges without a free end cannot break: they may lie in lanes that hold no cloth.
+template <class T> HWY_INLINE void note_broken(Wide<T> length, Wide<T> rest, Wide<T> weights, Limits<T>& limits) {
+  const Tag<T> d;
+  const auto holds = hn::Or(length <= limits.broken * rest, weights <= hn::Zero(d)); // false when no number
+  limits.bad = hn::IfThenElse(holds, limits.bad, hn::Set(d, T(1)));
+}
+
+/// One spring a lane between a and b: dlambda = (-C - at lambda) / (w_a + w_b + at), at = compliance / h^2
+/// [Macklin et al. 2016, XPBD, eq. 18]; positive lambda pulls here.
+template <bool k_repeats, class T>
+HWY_INLINE void solve_spring(Wide3<T>& a, Wide3<T>& b, Wide<T> wa, Wide<T> wb, Wide<T> rest, Wide<T> compliance,
+                             T* multiplier, bool first_pass, Limits<T>& limits) {
+  const Wide3<T> d = minus(b, a);
+  const Wide<T> length = length_of<T>(d), at = compliance * limits.per_h2;
+  note_broken<T>(length, rest, wa + wb, limits);
+  Wide<T> residual = length - rest;
+  if constexpr (k_repeats)
+    if (!first_pass) residual = residual - at * load(multiplier);
+  const Wide<T> weights = wa + wb + at;
+  const Wide<T> step = residual / (length * weights); // lambda's step over the length
+  if constexpr (k_repeats) {
+    const Wide<T> gained = step * length;
+    hn::Store(first_pass ? gained : load(multiplier) + gained, Tag<T>(), multiplier);
+  }
+  const Wide3<T> pull = times(step, d);
+  a = plus_times<T>(a, wa, pull);
+  b = minus_times<T>(b, wb, pull);
+}
+
+/// All springs of one direction between block and block + 1: row + down_a of the one with row + down_b of the other.
+template <bool k_repeats, class T>
+void solve_between(const WovenSheetView<T>& sheet, const WovenSprings<T>& springs, T* multipliers, int block,
+                   int down_a, int down_b, int rows, bool first_pass, Limits<T>& limits) {
+  for_rows(sheet, block, 0, rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    const std::ptrdiff_t at_a = at + down_a * k_lanes, at_b = at + sheet.block_stride + down_b * k_lanes;
+    Wide3<T> a = load(sheet.x, at_a), b = load(sheet.x, at_b);
+    solve_spring<k_repeats, T>(a, b, load(row_of(sheet.inverse_mass, block, row + down_a) + lane),
+                               load(row_of(sheet.inverse_mass, block + 1, row + down_b) + lane),
+                               load(row_of(springs.length, block, row) + lane),
+                               load(row_of(springs.compliance, block, row) + lane),
+                               k_repeats ? multipliers + at : nullptr, first_pass, limits);
+    store(a, sheet.x, at_a);
+    store(b, sheet.x, at_b);
+  });
+}
+
+// ---- bending
+
+/// Three particles along a thread bent against flatness: the energy B A |c|^2 / (2 l^4), c the second difference, is
+/// that of the curvature of a thin plate along the thread [Bergou et al. 2006, quadratic bending, on a grid]. Linear,
+/// so no angle and no root.
+template <class T>
+HWY_INLINE void solve_bend(Wide3<T>& a, Wide3<T>& b, Wide3<T>& c, Wide<T> wa, Wide<T> wb, Wide<T> wc, Wide<T> ratio,
+                           Wide<T> compliance, Wide<T> per_h2) {
+  const Wide<T> middle = set(T(1)) + ratio; // gradients: 1, -(1 + ratio), ratio
+  const Wide<T> weights = wa + wb * middle * middle + wc * ratio * ratio + compliance * per_h2;
+  const Wide3<T> curve = minus(times(ratio, minus(c, b)), minus(b, a));
+  const Wide3<T> step = times(set(T(1)) / weights, curve);
+  a = minus_times<T>(a, wa, step);
+  b = plus_times<T>(b, wb * middle, step);
+  c = minus_times<T>(c, wc * ratio, step);
+}
+
+template <class T> void bend_weft(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
+  for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    const std::ptrdiff_t at_b = at + sheet.block_stride, at_c = at_b + sheet.block_stride;
+    Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
+    solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
+                  load(row_of(sheet.inverse_mass, block + 1, row) + lane),
+                  load(row_of(sheet.inverse_mass, block + 2, row) + lane),
+                  load(row_of(sheet.weft_bend.ratio, block, row) + lane),
+                  load(row_of(sheet.weft_bend.compliance, block, row) + lane), per_h2);
+    store(a, sheet.x, at);
+    store(b, sheet.x, at_b);
+    store(c, sheet.x, at_c);
+  });
+}
+
+template <class T> void bend_warp(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
+  // Every third row: three passes in which no two triples share a particle.
+  for (int colour = 0; colour < 3; ++colour)
+    for (int row = colour; row + 2 < sheet.rows; row += 3)
+      for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
+        const std::ptrdiff_t at_b = at + k_lanes, at_c = at_b + k_lanes;
+        Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
+        solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
+                      load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+                      load(row_of(sheet.inverse_mass, block, row + 2) + lane),
+                      load(row_of(sheet.warp_bend.ratio, block, row) + lane),
+                      load(row_of(sheet.warp_bend.compliance, block, row) + lane), per_h2);
+        store(a, sheet.x, at);
+        store(b, sheet.x, at_b);
+        store(c, sheet.x, at_c);
+      });
+}
+
+// ---- warp threads
+
+/// One Newton step of (J M^-1 J^T + at) dlambda = C - at lambda over the whole threads of a block, positive lambda
+/// pulling: tridiagonal, since an edge shares a particle with the next one only. Elimination downwards, substitution
+/// upwards. `multipliers` counts from the block's first row.
+template <class T>
+void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bool first_step, Limits<T>& limits) {
+  const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
+  const int edges = sheet.rows - 1;
+  const std::ptrdiff_t field = sheet.block_stride;
+  T* const nx = sheet.workspace;
+  T* const n[3] = {nx, nx + field, nx + 2 * field};
+  T* const right = nx + 3 * field; // of the eliminated system
+  T* const upper = nx + 4 * field; // coupling to the edge below, times m
+  for (int lane = 0; lane < k_lanes; lane += width) {
+    const std::ptrdiff_t start = place(sheet, block, 0) + lane;
+    Wide3<T> above = load(sheet.x, start), direction_above = {set(T(0)), set(T(0)), set(T(0))};
+    Wide<T> w_above = load(row_of(sheet.inverse_mass, block, 0) + lane);
+    Wide<T> m = set(T(0)), d = set(T(0));
+    for (int k = 0; k < edges; ++k) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * k_lanes + lane;
+      const Wide3<T> below = load(sheet.x, start + (k + 1) * k_lanes);
+      const Wide<T> w_below = load(row_of(sheet.inverse_mass, block, k + 1) + lane);
+      const Wide3<T> edge = minus(below, above);
+      const Wide<T> length = length_of<T>(edge), rest = load(row_of(sheet.warp.length, block, k) + lane);
+      note_broken<T>(length, rest, w_above + w_below, limits);
+      const Wide3<T> direction = times(set(T(1)) / length, edge);
+      const Wide<T> compliance = load(row_of(sheet.warp.compliance, block, k) + lane) * limits.per_h2;
+      Wide<T> residual = length - rest;
+      if (!first_step) residual = residual - compliance * load(multipliers + at);
+      const Wide<T> coupling = hn::Neg(w_above * dot(direction, direction_above)); // 0 for the first edge
+      const Wide<T> to_above = coupling * m;
+      if (k > 0) hn::Store(to_above, Tag<T>(), upper + at - k_lanes);
+      m = set(T(1)) / (w_above + w_below + compliance - coupling * to_above);
+      d = (residual - coupling * d) * m;
+      store(direction, n, at);
+      hn::Store(d, Tag<T>(), right + at);
+      above = below;
+      w_above = w_below;
+      direction_above = direction;
+    }
+    Wide<T> step_below = set(T(0));
+    Wide3<T> pull_below = {set(T(0)), set(T(0)), set(T(0))};
+    for (int k = edges - 1; k >= 0; --k) {
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * k_lanes + lane;
+      Wide<T> step = load(right + at);
+      if (k + 1 < edges) step = step - load(upper + at) * step_below;
+      hn::Store(first_step ? step : load(multipliers + at) + step, Tag<T>(), multipliers + at);
+      const Wide3<T> pull = times(step, load(n, at));
+      const std::ptrdiff_t lower = start + (k + 1) * k_lanes;
+      const Wide<T> w = load(row_of(sheet.inverse_mass, block, k + 1) + lane);
+      store(plus(load(sheet.x, lower), times(w, minus(pull_below, pull))), sheet.x, lower);
+      step_below = step;
+      pull_below = pull;
+    }
+    const Wide<T> w = load(row_of(sheet.inverse_mass, block, 0) + lane);
+    store(plus(load(sheet.x, start), times(w, pull_below)), sheet.x, start);
+  }
+}
+
+/// Gauss-Seidel over the warp edges: even ones, then odd ones.
+template <class T> void sweep_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, Limits<T>& limits) {
+  for (int parity = 0; parity < 2; ++parity)
+    for (int row = parity; row + 1 < sheet.rows; row += 2)
+      for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
+        Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
+        solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
+                              load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+                              load(row_of(sheet.warp.length, block, row) + lane),
+                              load(row_of(sheet.warp.compliance, block, row) + lane),
+                              multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
+        store(a, sheet.x, at);
+        store(b, sheet.x, at + k_lanes);
+      });
+}
+
+// ---- tethers
+
+/// Rigid and one-sided [Kim, Chentanez, Mueller 2012, Long Range Attachments].
+template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, Limits<T>& limits) {
+  const Tag<T> tag;
+  const hn::RebindToSigned<Tag<T>> elements;
+  for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    const auto anchor = hn::Load(elements, sheet.tethers.anchor + at);
+    const Wide3<T> a = {hn::GatherIndex(tag, sheet.x[0], anchor), hn::GatherIndex(tag, sheet.x[1], anchor),
+                        hn::GatherIndex(tag, sheet.x[2], anchor)};
+    const Wide<T> length = load(sheet.tethers.length + at);
+    const Wide3<T> x = load(sheet.x, at), d = minus(x, a);
+    const Wide<T> squared = dot(d, d);
+    const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_taut = hn::And(is_free, squared > length * length);
+    if (HWY_LIKELY(hn::AllFalse(tag, is_taut))) return;
+    const Wide<T> broken = limits.broken * length;
+    limits.bad = hn::IfThenElse(hn::And(is_taut, squared > broken * broken), set(T(1)), limits.bad);
+    const Wide<T> back = hn::IfThenElseZero(is_taut, set(T(1)) - length / length_of<T>(d));
+    store(minus_times<T>(x, back, d), sheet.x, at);
+  });
+}
+
+// ---- all constraints
+
+/// Diagonals, where asked for, and weft edges between a block and the next.
+template <bool k_repeats, class T>
+void solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bool first_pass, Limits<T>& limits) {
+  const bool is_last = block + 1 == sheet.blocks;
+  if (is_last) fetch_halo(sheet, sheet.x, 0);
+  if (with_shear) {
+    solve_between<k_repeats, T>(sheet, sheet.falling, sheet.multipliers[2], block, 0, 1, sheet.rows - 1, first_pass,
+                                limits);
+    solve_between<k_repeats, T>(sheet, sheet.rising, sheet.multipliers[3], block, 1, 0, sheet.rows - 1, first_pass,
+                                limits);
+  }
+  solve_between<k_repeats, T>(sheet, sheet.weft, sheet.multipliers[1], block, 0, 0, sheet.rows, first_pass, limits);
+  if (is_last) return_halo(sheet, sheet.x, 0);
+}
+
+template <class T> void bend_all(const WovenSheetView<T>& sheet, Wide<T> per_h2) {
+  const int last = sheet.blocks - 1;
+  for (int block = 0; block + 2 < sheet.blocks; ++block) bend_weft(sheet, block, per_h2);
+  fetch_halo(sheet, sheet.x, 0);
+  bend_weft(sheet, last - 1, per_h2);
+  fetch_halo(sheet, sheet.x, 1); // not before: of three blocks, block 1 is the last but one
+  bend_weft(sheet, last, per_h2);
+  return_halo(sheet, sheet.x, 0);
+  return_halo(sheet, sheet.x, 1);
+  for (int block = 0; block < sheet.blocks; ++block) bend_warp(sheet, block, per_h2);
+}
+
+template <bool k_repeats, class T> bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
+  const Tag<T> tag;
+  Limits<T> limits = {set(T(1) / (step.h * step.h)), set(T(1.0 + k_diverged_stretch)), hn::Zero(tag)};
+  if (sheet.has_bend) bend_all(sheet, limits.per_h2);
+  if (sheet.tethers.length)
+    for (int block = 0; block < sheet.blocks; ++block) pull_tethers(sheet, block, limits);
+  for (int pass = 0; pass < step.passes; ++pass) {
+    const bool first = pass == 0;
+    for (int block = 0; block < sheet.blocks; ++block)
+      solve_across<k_repeats>(sheet, block, sheet.has_shear, first, limits);
+    for (int block = 0; block < sheet.blocks; ++block) {
+      // With one pass a thread's multipliers are needed no longer than its own solve.
+      T* multipliers = sheet.multipliers[0] + (k_repeats ? place(sheet, block, 0) : 0);
+      for (int k = 0; k < step.newton_steps; ++k) solve_threads(sheet, block, multipliers, first && k == 0, limits);
+      for (int k = 0; k < step.closing_sweeps; ++k) sweep_threads(sheet, block, multipliers, limits);
+    }
+    // Where few threads are held the weft carries the load: once more, the other way round.
+    if constexpr (k_repeats)
+      if (sheet.tethers.length)
+        for (int block = sheet.blocks - 1; block >= 0; --block) solve_across<true>(sheet, block, false, false, limits);
+  }
+  return hn::AllFalse(tag, limits.bad > hn::Zero(tag));
+}
+
+template <class T> bool constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
+  const bool repeats = step.passes > 1 || sheet.tethers.length;
+  return repeats ? all_constraints<true>(sheet, step) : all_constraints<false>(sheet, step);
+}
+
+} // namespace tutu::cloth::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

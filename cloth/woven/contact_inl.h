@@ -1,0 +1,365 @@
+// A woven sheet against colliders: particles, then the edges and faces of cells. For woven_kernel.cpp alone.
+#if defined(TUTU_CLOTH_WOVEN_CONTACT_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef TUTU_CLOTH_WOVEN_CONTACT_INL_H
+#undef TUTU_CLOTH_WOVEN_CONTACT_INL_H
+#else
+#define TUTU_CLOTH_WOVEN_CONTACT_INL_H
+#endif
+
+#include "cloth/state/tolerances.h"
+#include "cloth/woven/vectors_inl.h"
+
+#include <cmath>
+#include <limits>
+
+HWY_BEFORE_NAMESPACE();
+namespace tutu::cloth::HWY_NAMESPACE {
+
+// ---- contacts
+
+/// Points nearer to an axis than this, m, have no direction from it: the rounding of coordinates of a metre or two.
+template <class T> constexpr T k_no_direction = sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-12);
+
+/// What a contact moves a point of the cloth by: out of the collider along the normal n, and back along what it slipped
+/// over the moving surface, by at most friction * push (Coulomb's law on positions). `slip`: the point's way in this
+/// substep less that of the surface under it. `is_hit` lanes only; 0 in the others.
+template <class T, class Mask>
+HWY_INLINE Wide3<T> response(Mask is_hit, Wide<T> depth, const Wide3<T>& n, const Wide3<T>& way, const Wide3<T>& slip,
+                             T surface_moved, T push_speed_step, T friction) {
+  // A contact that was made in this substep is no deeper than both sides moved: deeper ones come from a start
+  // inside, and are worked out at a bounded speed.
+  const Wide<T> most = hn::Sqrt(dot(way, way)) + set(surface_moved + push_speed_step);
+  const Wide<T> push = hn::IfThenElseZero(is_hit, hn::Min(depth, most));
+  const Wide3<T> out = times(push, n);
+  const Wide<T> along = dot(slip, n);
+  const Wide3<T> tangential = minus_times<T>(slip, along, n);
+  const Wide<T> length = length_of<T>(tangential);
+  const Wide<T> share = hn::Min(set(T(1)), set(friction) * push / length);
+  return minus_times<T>(out, share, tangential);
+}
+
+/// A collider broadcast to all lanes.
+template <class T> struct WideCollider {
+  Wide3<T> a, axis, move_a, move_axis, spin, on_axis;
+  Wide<T> per_axis_squared, radius, taper, lean;
+  explicit HWY_INLINE WideCollider(const WovenCollider<T>& c)
+      : a(set3(c.a)), axis(set3(c.axis)), move_a(set3(c.move_a)), move_axis(set3(c.move_axis)), spin(set3(c.spin)),
+        on_axis(set3(c.on_axis)), per_axis_squared(set(c.per_axis_squared)), radius(set(c.radius)), taper(set(c.taper)),
+        lean(set(c.lean)) {}
+};
+
+template <class T> HWY_INLINE Wide<T> clamped(Wide<T> t) { return hn::Min(hn::Max(t, set(T(0))), set(T(1))); }
+
+/// The place on the axis of the ball nearest to a point d from a (proxies::nearest_on_axis).
+template <bool k_tapered, class T> HWY_INLINE Wide<T> nearest_on_axis(const WideCollider<T>& c, const Wide3<T>& d) {
+  const Wide<T> foot = dot(d, c.axis) * c.per_axis_squared;
+  if constexpr (!k_tapered) return clamped<T>(foot);
+  return clamped<T>(foot + length_of<T>(minus_times<T>(d, foot, c.axis)) * c.lean);
+}
+
+template <bool k_tapered, class T> HWY_INLINE Wide<T> radius_at(const WideCollider<T>& c, Wide<T> t) {
+  if constexpr (k_tapered) return c.radius + t * c.taper;
+  return c.radius;
+}
+
+/// The surface of a collider at a point in direction n from the place t of its axis, where its radius is given: how far
+/// it has moved.
+template <class T>
+HWY_INLINE Wide3<T> surface_move(const WideCollider<T>& c, Wide<T> t, Wide<T> radius, const Wide3<T>& n) {
+  const Wide3<T> arm = times(radius, n);
+  return plus(plus_times<T>(c.move_a, t, c.move_axis), cross(c.spin, arm));
+}
+
+/// Direction of q, of squared length `squared`; where it has none, the collider's own.
+template <class T> HWY_INLINE Wide3<T> normal_of(const Wide3<T>& q, Wide<T> length, const Wide3<T>& on_axis) {
+  const auto has_none = length < set(k_no_direction<T>);
+  const Wide3<T> n = times(set(T(1)) / length, q);
+  return {hn::IfThenElse(has_none, on_axis.x, n.x), hn::IfThenElse(has_none, on_axis.y, n.y),
+          hn::IfThenElse(has_none, on_axis.z, n.z)};
+}
+
+template <bool k_tapered, class T>
+T contact_capsule_as(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+                     T rise, std::int64_t* contacts) {
+  const Tag<T> tag;
+  WideCollider<T> c(collider);
+  c.radius = set(collider.radius + rise);
+  const Wide<T> far = set(std::numeric_limits<T>::max()), squared_radius = c.radius * c.radius;
+  Wide<T> least = far; // distance from the surface; of a plain capsule squared distance from the axis
+  for_rows(sheet, block, first, last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    const Wide3<T> x = load(sheet.x, at), d = minus(x, c.a);
+    const Wide<T> t = nearest_on_axis<k_tapered, T>(c, d), radius = radius_at<k_tapered, T>(c, t);
+    const Wide3<T> q = minus_times<T>(d, t, c.axis);
+    const Wide<T> squared = dot(q, q), length = k_tapered ? length_of<T>(q) : squared;
+    const Wide<T> beyond = k_tapered ? length - radius : squared;
+    least = hn::Min(least, beyond);
+    const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_hit = hn::And(is_free, k_tapered ? beyond < hn::Zero(tag) : squared < squared_radius);
+    if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
+    const Wide<T> from_axis = k_tapered ? length : length_of<T>(q);
+    const Wide3<T> n = normal_of<T>(q, from_axis, c.on_axis);
+    const Wide3<T> way = minus(x, load(sheet.was, at));
+    const Wide3<T> slip = minus(way, surface_move<T>(c, t, radius, n));
+    store(plus(x, response<T>(is_hit, radius - from_axis, n, way, slip, collider.moved, collider.push_speed_step,
+                              collider.friction)),
+          sheet.x, at);
+    *contacts += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
+  });
+  const T nearest = hn::GetLane(hn::MinOfLanes(tag, least));
+  return k_tapered ? nearest : std::sqrt(nearest) - (collider.radius + rise);
+}
+
+template <class T>
+T contact_capsule(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+                  T rise, std::int64_t* contacts) {
+  const auto contact = collider.taper == T(0) ? contact_capsule_as<false, T> : contact_capsule_as<true, T>;
+  return contact(sheet, block, first, last, collider, rise, contacts);
+}
+
+template <class T>
+T contact_plane(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenPlane<T>& plane,
+                std::int64_t* contacts) {
+  const Tag<T> tag;
+  const Wide3<T> n = set3(plane.normal);
+  const Wide<T> offset = set(plane.offset), far = set(std::numeric_limits<T>::max());
+  Wide<T> least = far;
+  for_rows(sheet, block, first, last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    const Wide3<T> x = load(sheet.x, at);
+    const Wide<T> height = dot(x, n) - offset;
+    least = hn::Min(least, height);
+    const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_hit = hn::And(is_free, height < hn::Zero(tag));
+    if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
+    const Wide3<T> way = minus(x, load(sheet.was, at));
+    store(plus(x, response<T>(is_hit, hn::Neg(height), n, way, way, T(0), plane.push_speed_step, plane.friction)),
+          sheet.x, at);
+    *contacts += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
+  });
+  return hn::GetLane(hn::MinOfLanes(tag, least));
+}
+
+// ---- edges and faces
+
+/// A corner of a cell: where it is kept, its place and its inverse mass.
+template <class T> struct Corner {
+  std::ptrdiff_t at;
+  Wide3<T> x;
+  Wide<T> w;
+};
+
+template <class T> HWY_INLINE Corner<T> corner(const WovenSheetView<T>& sheet, int block, int row, int lane) {
+  const std::ptrdiff_t at = place(sheet, block, row) + lane;
+  return {at, load(sheet.x, at), load(row_of(sheet.inverse_mass, block, row) + lane)};
+}
+
+/// One vector of cells against one collider.
+template <bool k_tapered, class T> class CellContact {
+public:
+  using Mask = decltype(Wide<T>() < Wide<T>());
+
+  HWY_INLINE CellContact(const WovenSheetView<T>& sheet, const WovenCollider<T>& collider, const WideCollider<T>& wide)
+      : sheet_(sheet), collider_(collider), c_(wide), touched_(0) {}
+
+  /// Points that hit since the last call.
+  HWY_INLINE std::int64_t touched() const { return touched_; }
+
+  HWY_INLINE void edge(Corner<T>& a, Corner<T>& b, Mask exists) {
+    const Tag<T> tag;
+    const Wide3<T> along = minus(b.x, a.x), r = minus(a.x, c_.a);
+    const Wide<T> ee = hn::Max(dot(along, along), set(T(1e-20)));
+    const auto [s, t] = k_tapered ? nearest_of_cone(along, r, ee) : nearest_of_segments(along, r, ee);
+    const Wide3<T> q = minus(plus_times<T>(r, s, along), times(t, c_.axis));
+    const auto is_hit = hn::And(hn::And(exists, (a.w + b.w) > hn::Zero(tag)), dot(q, q) < squared_radius(t));
+    if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
+    const Wide<T> share_a = set(T(1)) - s;
+    const Wide3<T> way =
+        plus(times(share_a, minus(a.x, load(sheet_.was, a.at))), times(s, minus(b.x, load(sheet_.was, b.at))));
+    const Wide<T> by_a = a.w * share_a, by_b = b.w * s;
+    const Wide3<T> moved = moved_point(t, q, way, is_hit, by_a * share_a + by_b * s, hn::Max(by_a, by_b));
+    a.x = plus_times<T>(a.x, by_a, moved);
+    b.x = plus_times<T>(b.x, by_b, moved);
+    touched_ += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
+  }
+
+  /// The end t (0 or 1) of the axis against the inside of a triangle: its foot on the plane [Ericson 2005, 3.4]. Feet
+  /// outside belong to an edge.
+  HWY_INLINE void face(T t, Corner<T>& o, Corner<T>& p, Corner<T>& q, Mask exists) {
+    const Tag<T> tag;
+    const Wide3<T> e = minus(p.x, o.x), f = minus(q.x, o.x), r = minus(plus_times<T>(c_.a, set(t), c_.axis), o.x);
+    const Wide<T> ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), re = dot(r, e), rf = dot(r, f);
+    const Wide<T> per = set(T(1)) / hn::Max(ee * ff - ef * ef, set(T(1e-20)));
+    const Wide<T> v = (ff * re - ef * rf) * per, w = (ee * rf - ef * re) * per, u = set(T(1)) - v - w;
+    const Wide3<T> away = minus(plus(times(v, e), times(w, f)), r);
+    const auto inside = hn::Min(u, hn::Min(v, w)) >= hn::Zero(tag);
+    const auto near = hn::And(dot(away, away) < squared_radius(set(t)), (o.w + p.w + q.w) > hn::Zero(tag));
+    const auto is_hit = hn::And(exists, hn::And(inside, near));
+    if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
+    const Wide3<T> way =
+        plus(times(u, minus(o.x, load(sheet_.was, o.at))),
+             plus(times(v, minus(p.x, load(sheet_.was, p.at))), times(w, minus(q.x, load(sheet_.was, q.at)))));
+    const Wide<T> by_o = o.w * u, by_p = p.w * v, by_q = q.w * w;
+    const Wide3<T> moved =
+        moved_point(set(t), away, way, is_hit, by_o * u + by_p * v + by_q * w, hn::Max(by_o, hn::Max(by_p, by_q)));
+    o.x = plus_times<T>(o.x, by_o, moved);
+    p.x = plus_times<T>(p.x, by_p, moved);
+    q.x = plus_times<T>(q.x, by_q, moved);
+    touched_ += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
+  }
+
+private:
+  struct Place {
+    Wide<T> s, t; ///< of the edge and of the axis
+  };
+
+  /// Segment against segment [Ericson 2005, Real-Time Collision Detection, 5.1.9], the axis being the second.
+  HWY_INLINE Place nearest_of_segments(const Wide3<T>& along, const Wide3<T>& r, Wide<T> ee) const {
+    const Wide<T> ea = dot(along, c_.axis), er = dot(along, r), ar = dot(c_.axis, r);
+    // The line's nearest point to the axis' line; the product with 1 / |axis|^2 keeps the numbers of one size.
+    const Wide<T> slant = ea * c_.per_axis_squared, determinant = ee - ea * slant;
+    constexpr T k_parallel = sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-12); // squared sine between them
+    const Wide<T> on_line = (slant * ar - er) / hn::Max(determinant, set(k_parallel) * ee);
+    const Wide<T> t = clamped<T>((ea * clamped<T>(on_line) + ar) * c_.per_axis_squared);
+    return {clamped<T>((t * ea - er) / ee), t};
+  }
+
+  /// proxies::edge_contact has the derivation. Less than k_steep counts as steeper than the cone.
+  HWY_INLINE Place nearest_of_cone(const Wide3<T>& along, const Wide3<T>& r, Wide<T> ee) const {
+    const Tag<T> tag;
+    constexpr T k_steep = sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-12); // of |along|^2 |axis|^2
+    const Wide3<T> across = cross(along, c_.axis);
+    const Wide<T> squared = dot(across, across), taper_ee = c_.taper * ee, upright = squared - taper_ee * c_.taper;
+    const Wide<T> least = hn::Max(set(k_steep) * ee * dot(c_.axis, c_.axis), set(T(1e-30)));
+    const Wide<T> leaning = hn::Abs(dot(r, across)) * taper_ee / hn::Sqrt(hn::Max(upright, least));
+    const Wide<T> facing = (dot(cross(along, r), across) + leaning) / hn::Max(squared, least);
+    const Wide<T> wide_end = hn::IfThenElseZero(c_.taper > hn::Zero(tag), set(T(1)));
+    const Wide<T> t = clamped<T>(hn::IfThenElse(upright > least, facing, wide_end));
+    const Wide<T> free = (t * dot(along, c_.axis) - dot(along, r)) / ee, s = clamped<T>(free);
+    return {s, hn::IfThenElse(s == free, t, nearest_on_axis<k_tapered, T>(c_, plus_times<T>(r, s, along)))};
+  }
+
+  HWY_INLINE Wide<T> squared_radius(Wide<T> t) const {
+    const Wide<T> radius = radius_at<k_tapered, T>(c_, t);
+    return radius * radius;
+  }
+
+  /// What the contact point, q away from the place t of the axis, has to move by, over the sum of inverse mass times
+  /// squared share of its corners: each moves by its own inverse mass times share of that. `most` is the largest of
+  /// these products: beside a pinned corner the lever is kept to k_longest_lever.
+  HWY_INLINE Wide3<T> moved_point(Wide<T> t, const Wide3<T>& q, const Wide3<T>& way, Mask is_hit, Wide<T> weights,
+                                  Wide<T> most) const {
+    const Wide<T> length = length_of<T>(q), radius = radius_at<k_tapered, T>(c_, t);
+    const Wide3<T> n = normal_of<T>(q, length, c_.on_axis);
+    const Wide3<T> slip = minus(way, surface_move<T>(c_, t, radius, n));
+    const Wide3<T> moved = response<T>(is_hit, radius - length, n, way, slip, collider_.moved,
+                                       collider_.push_speed_step, collider_.friction);
+    const Wide<T> least = hn::Max(most * set(T(1.0 / k_longest_lever)), set(T(1e-20)));
+    return times(set(T(1)) / hn::Max(weights, least), moved);
+  }
+
+  const WovenSheetView<T>& sheet_;
+  const WovenCollider<T>& collider_;
+  const WideCollider<T>& c_;
+  std::int64_t touched_;
+};
+
+template <class T> T widest(const WovenCollider<T>& c) { return c.radius + (c.taper > T(0) ? c.taper : T(0)); }
+
+/// Weft edges and diagonals alone, for cells so low that nothing pokes between the two.
+template <bool k_tapered, class T>
+void contact_low_cells(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+                       const CellFeatures<T>& features, std::int64_t* contacts) {
+  const Tag<T> tag;
+  const WideCollider<T> c(collider);
+  const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
+  const T around = widest(collider) + features.around;
+  const Wide<T> squared_reach = set(around * around);
+  const auto width = static_cast<int>(hn::Lanes(tag));
+  for (int row = first; row < last; ++row)
+    for (int lane = 0; lane < k_lanes; lane += width) {
+      const std::ptrdiff_t at_a = place(sheet, block, row) + lane, at_b = place(sheet, block + 1, row) + lane;
+      const Wide3<T> m = minus(times(half, plus(load(sheet.x, at_a), load(sheet.x, at_b))), c.a);
+      const Wide3<T> away = minus_times<T>(m, clamped<T>(dot(m, c.axis) * c.per_axis_squared), c.axis);
+      const auto near =
+          dot(away, away) < squared_reach; // each lane for itself: the answer must not depend on how many there are
+      if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
+      Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
+      const auto exists = hn::And(near, load(row_of(sheet.weft.compliance, block, row) + lane) < real);
+      CellContact<k_tapered, T> contact(sheet, collider, c);
+      contact.edge(a, b, exists);
+      const bool has_below = row + 1 < sheet.rows;
+      Corner<T> d = corner(sheet, block, has_below ? row + 1 : row, lane);
+      if (has_below) contact.edge(b, d, exists);
+      if (contact.touched() == 0) continue;
+      *contacts += contact.touched();
+      store(a.x, sheet.x, a.at);
+      store(b.x, sheet.x, b.at);
+      if (has_below) store(d.x, sheet.x, d.at);
+    }
+}
+
+template <bool k_tapered, class T>
+void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+                      const CellFeatures<T>& features, std::int64_t* contacts) {
+  if (!features.high) {
+    contact_low_cells<k_tapered>(sheet, block, first, last, collider, features, contacts);
+    return;
+  }
+  const Tag<T> tag;
+  const WideCollider<T> c(collider);
+  const int ends = collider.per_axis_squared > T(0) ? 2 : 1;
+  const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
+  const auto width = static_cast<int>(hn::Lanes(tag));
+  for (int row = first; row < last; ++row)
+    for (int lane = 0; lane < k_lanes; lane += width) {
+      const bool has_below = row + 1 < sheet.rows;
+      Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
+      Corner<T> d = has_below ? corner(sheet, block, row + 1, lane) : a;
+      Corner<T> e = has_below ? corner(sheet, block + 1, row + 1, lane) : b;
+      // A cell lies as far around its middle as its farthest corner. Each lane for itself: the answer must not depend
+      // on how many there are.
+      const Wide3<T> middle = times(half, plus(b.x, d.x)), m = minus(middle, c.a);
+      const Wide3<T> to_b = minus(b.x, middle), to_a = minus(a.x, middle), to_e = minus(e.x, middle);
+      const Wide<T> reach = set(widest(collider)) +
+                            hn::Sqrt(hn::Max(dot(to_b, to_b), hn::Max(dot(to_a, to_a), dot(to_e, to_e)))) +
+                            set(T(1e-6));
+      const Wide<T> squared_reach = reach * reach;
+      const Wide3<T> away = minus_times<T>(m, clamped<T>(dot(m, c.axis) * c.per_axis_squared), c.axis);
+      const auto near = dot(away, away) < squared_reach;
+      if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
+
+      // Each feature is looked at where the ones before it left its corners.
+      const auto exists = hn::And(near, load(row_of(sheet.weft.compliance, block, row) + lane) < real);
+      CellContact<k_tapered, T> contact(sheet, collider, c);
+      contact.edge(a, b, exists);
+      if (has_below) {
+        contact.edge(a, d, near);
+        contact.edge(b, d, exists);
+        for (int end = 0; end < ends; ++end) {
+          const Wide3<T> to_end = end == 0 ? m : minus(m, c.axis);
+          const auto near_end = hn::And(exists, dot(to_end, to_end) < squared_reach); // each lane for itself
+          if (hn::AllFalse(tag, near_end)) continue;
+          contact.face(static_cast<T>(end), a, d, b, near_end);
+          contact.face(static_cast<T>(end), e, b, d, near_end);
+        }
+      }
+      if (contact.touched() == 0) continue;
+      *contacts += contact.touched();
+      store(a.x, sheet.x, a.at);
+      store(b.x, sheet.x, b.at);
+      if (!has_below) continue;
+      store(d.x, sheet.x, d.at);
+      store(e.x, sheet.x, e.at);
+    }
+}
+
+template <class T>
+void contact_cells(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+                   const CellFeatures<T>& features, std::int64_t* contacts) {
+  const auto contact = collider.taper == T(0) ? contact_cells_as<false, T> : contact_cells_as<true, T>;
+  contact(sheet, block, first, last, collider, features, contacts);
+}
+
+} // namespace tutu::cloth::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

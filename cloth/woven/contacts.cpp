@@ -1,0 +1,263 @@
+#include "cloth/woven/contacts.h"
+
+#include "cloth/state/tolerances.h"
+#include "cloth/woven/sweep.h"
+#include "proxies/distance/signed_distance.h"
+#include "proxies/motion/sweep.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tutu::cloth {
+namespace {
+
+constexpr int k_tile_rows = 8; // of 16 particles: small enough for few colliders, large enough to ask once for many
+
+template <class T> void copy(const Vec3& from, T* to) {
+  for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<T>(from[axis]);
+}
+
+/// The capsule where both end balls count; where one held the other in `now`, that ball.
+proxies::Capsule without_swallowed(const proxies::Capsule& capsule, const proxies::Capsule& now) {
+  if (now.taper == 0.0 || (now.b - now.a).squaredNorm() > now.taper * now.taper) return capsule;
+  const Vec3& centre = now.taper > 0.0 ? capsule.b : capsule.a;
+  return {centre, centre, now.widest(), 0.0};
+}
+
+} // namespace
+
+template <class T>
+WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& options, const WovenSheet<T>& sheet)
+    : offset_(garment.fabric.contact_offset()), features_(options.features), swept_(options.swept) {
+  const WovenSheetView<T>& view = sheet.view();
+  for (int block = 0; block < view.blocks; ++block)
+    for (int first = 0; first < view.rows; first += k_tile_rows) {
+      Tile tile;
+      tile.block = block;
+      tile.first = first;
+      tile.last = std::min(first + k_tile_rows, view.rows);
+      tiles_.push_back(tile);
+    }
+  for (const Spring& spring : garment.springs) {
+    if (spring.kind == SpringKind::bend) continue;
+    // A cell lies within its longest diagonal of each corner, and cloth stretches.
+    const Weave& weave = sheet.weave();
+    const int row = std::min(weave.row(spring.i), weave.row(spring.j));
+    for (Tile& tile : tiles_) {
+      if (row < tile.first - 1 || row >= tile.last) continue;
+      tile.reach = std::max(tile.reach, k_cell_stretch * spring.rest_length);
+      const bool down = weave.row(spring.i) != weave.row(spring.j);
+      double& edge = spring.kind == SpringKind::shear ? tile.diagonal : down ? tile.warp : tile.weft;
+      edge = std::max(edge, spring.rest_length);
+    }
+  }
+  boxes_.resize(tiles_.size());
+}
+
+template <class T>
+void WovenContacts<T>::begin_frame(proxies::CollisionQuery& query, const FrameInput& input,
+                                   const WovenSheet<T>& sheet) {
+  input_ = &input;
+  s_before_ = 0.0;
+  placed_.assign(input.colliders.start.begin(), input.colliders.start.end());
+  if (colliders_.size() != placed_.size()) { // room for all there may be, so that no later frame asks for more
+    const std::size_t most = tiles_.size() * (placed_.size() + 1);
+    pairs_.reserve(most);
+    candidates_.colliders.reserve(most);
+  }
+  colliders_.resize(placed_.size());
+  for (Tile& tile : tiles_) tile.margin = k_least_tile_margin + k_margin_growth * tile.speed * input.seconds;
+  find_pairs(query, sheet);
+}
+
+template <class T> void WovenContacts<T>::find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet) {
+  const WovenKernel<T> kernel = woven_kernel<T>();
+  for (std::size_t t = 0; t < tiles_.size(); ++t) {
+    Tile& tile = tiles_[t];
+    tile.travelled = 0.0;
+    T low[3], high[3];
+    kernel.bounds(sheet.view(), tile.block, tile.first, tile.last, low, high);
+    const double grown = offset_ + tile.margin + (features_ == ContactFeatures::particles ? 0.0 : tile.reach);
+    for (int axis = 0; axis < 3; ++axis) {
+      boxes_[t].min()[axis] = static_cast<double>(low[axis]) + sheet.origin()[axis] - grown;
+      boxes_[t].max()[axis] = static_cast<double>(high[axis]) + sheet.origin()[axis] + grown;
+    }
+  }
+  query.find_for_boxes(input_->colliders, boxes_, candidates_);
+  begin_ = candidates_.begin;
+  pairs_.clear();
+  for (std::size_t t = 0; t < tiles_.size(); ++t)
+    for (int p = begin_[t]; p < begin_[t + 1]; ++p) pairs_.push_back(pair_of(tiles_[t], candidates_.colliders[p]));
+  collider_travel_.assign(placed_.size() + 1, 0.0);
+  ++counts_.searches;
+  counts_.candidates += static_cast<std::int64_t>(pairs_.size());
+}
+
+template <class T> void WovenContacts<T>::place(const Vec3& origin, double s, double h) {
+  placed_before_.swap(placed_);
+  placed_.resize(placed_before_.size());
+  proxies::colliders_at(input_->colliders, s, placed_);
+  const double push_speed_step = k_push_out_speed * h;
+  for (std::size_t k = 0; k < placed_.size(); ++k) {
+    const proxies::Capsule now = without_swallowed(placed_[k], placed_[k]),
+                           before = without_swallowed(placed_before_[k], placed_[k]);
+    WovenCollider<T>& c = colliders_[k];
+    const Vec3 axis = now.b - now.a, move_a = now.a - before.a, move_b = now.b - before.b;
+    const double squared = axis.squaredNorm();
+    const bool is_sphere = !(squared > 0.0);
+    copy(Vec3(now.a - origin), c.a);
+    copy(axis, c.axis);
+    c.per_axis_squared = is_sphere ? T(0) : static_cast<T>(1.0 / squared);
+    c.radius = static_cast<T>(now.radius + offset_);
+    c.taper = static_cast<T>(now.taper);
+    c.lean =
+        now.taper == 0.0 ? T(0) : static_cast<T>(now.taper / std::sqrt(squared * (squared - now.taper * now.taper)));
+    copy(move_a, c.move_a);
+    copy(Vec3(move_b - move_a), c.move_axis);
+    Vec3 spin = Vec3::Zero();
+    if (!input_->colliders.spin.empty()) spin = (s - s_before_) * input_->colliders.spin[k];
+    copy(is_sphere ? spin : Vec3(axis * (axis.dot(spin) / squared)), c.spin);
+    copy(proxies::normal_on_axis(now), c.on_axis);
+    c.friction = input_->friction.empty() ? T(0) : static_cast<T>(input_->friction[k]);
+    const double moved = std::max(move_a.norm(), move_b.norm());
+    c.moved = static_cast<T>(moved);
+    c.push_speed_step = static_cast<T>(push_speed_step);
+    collider_travel_[k] += moved;
+  }
+  ground_.reset();
+  if (const auto& plane = input_->colliders.ground) {
+    WovenPlane<T>& g = ground_.emplace();
+    copy(plane->normal, g.normal);
+    g.offset = static_cast<T>(plane->offset - plane->normal.dot(origin) + offset_);
+    g.friction = input_->friction.empty() ? T(0) : static_cast<T>(input_->friction[placed_.size()]);
+    g.push_speed_step = static_cast<T>(push_speed_step);
+  }
+  s_step_ = s - s_before_;
+  s_before_ = s;
+}
+
+template <class T>
+bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel<T>& kernel, const WovenSheet<T>& sheet,
+                               double s, double h) {
+  const WovenSheetView<T>& view = sheet.view();
+  place(sheet.origin(), s, h);
+  bool all_numbers = true, covered = true;
+  for (Tile& tile : tiles_) {
+    const double way = std::sqrt(static_cast<double>(kernel.farthest(view, tile.block, tile.first, tile.last)));
+    all_numbers = all_numbers && way < k_world_radius; // false for what is no number
+    tile.way = way;
+    tile.travelled += way;
+    covered = covered && tile.travelled <= tile.margin;
+  }
+  if (!all_numbers) return false;
+  if (!covered) {
+    for (Tile& tile : tiles_) tile.margin = std::max(tile.margin, k_margin_growth * tile.travelled);
+    find_pairs(query, sheet);
+  }
+  const int ground = static_cast<int>(placed_.size());
+  for (std::size_t t = 0; t < tiles_.size(); ++t) {
+    Tile& tile = tiles_[t];
+    const std::int64_t before = counts_.contacts;
+    for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
+      Pair& pair = pairs_[p];
+      const double travelled = tile.travelled + collider_travel_[pair.collider];
+      pair.in_haste = false;
+      if (swept_ && pair.collider != ground && travelled >= pair.wake - tile.reach) {
+        // So near a cell of the tile may be.
+        const double safe = proxies::safe_motion(placed_[pair.collider].narrowest(), offset_);
+        const double motion = tile.way + static_cast<double>(colliders_[pair.collider].moved);
+        const double hasty = pair.fits_through ? std::min(0.5 * safe, k_hasty_speed * h) : 0.5 * safe;
+        pair.in_haste = motion >= hasty && features_ != ContactFeatures::particles;
+        if (motion >= safe) sweep(sheet, tile, pair);
+      }
+      if (travelled < pair.wake) continue;
+      ++counts_.queries;
+      const T gap = pair.collider == ground
+                        ? kernel.contact_plane(view, tile.block, tile.first, tile.last, *ground_, &counts_.contacts)
+                        : kernel.contact_capsule(view, tile.block, tile.first, tile.last, colliders_[pair.collider],
+                                                 pair.rise, &counts_.contacts);
+      pair.wake = travelled + static_cast<double>(gap) - k_tile_travel_slack;
+    }
+    tile.touched = counts_.contacts != before;
+  }
+  resolve_cells(kernel, view);
+  return true;
+}
+
+template <class T> void WovenContacts<T>::sweep(const WovenSheet<T>& sheet, const Tile& tile, const Pair& pair) {
+  SweptCollider collider;
+  collider.start = placed_before_[pair.collider];
+  collider.end = placed_[pair.collider];
+  if (!input_->colliders.spin.empty()) collider.spin = s_step_ * input_->colliders.spin[pair.collider];
+  collider.offset = offset_;
+  counts_.contacts +=
+      sweep_tile(sheet, tile.block, tile.first, tile.last, collider, pair.features.wide || pair.in_haste);
+}
+
+template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(const Tile& tile, int collider) const {
+  Pair pair;
+  pair.collider = collider;
+  const bool is_flat = collider == static_cast<int>(placed_.size()); // a plane meets the corners first
+  if (is_flat || features_ == ContactFeatures::particles) return pair;
+  if (features_ == ContactFeatures::triangles) {
+    pair.features = all_features(tile);
+    return pair;
+  }
+  const double radius = placed_[collider].narrowest(), clear = radius - k_tolerated_poke;
+  const double weft = k_worn_cell * tile.weft, warp = k_worn_cell * tile.warp;
+  // The middle of a triangle bent around the collider with legs of length h lies (2/9) h^2 within the square of its
+  // corners' distance from the axis: it clears all but k_tolerated_poke when the corners keep this from the axis.
+  const double longer = std::max(weft, warp), kept = clear * clear + 2.0 / 9.0 * longer * longer;
+  const double floating = radius + offset_ + k_most_rise, offset = radius + offset_;
+  pair.fits_through = k_torn_cell * std::max(tile.weft, tile.warp) > 2.0 * offset;
+  if (kept <= floating * floating) {
+    pair.rise = static_cast<T>(kept > offset * offset ? std::sqrt(kept) - offset : 0.0);
+    return pair;
+  }
+  // Of a line of length l whose ends keep the offset the middle lies l^2 / 4 within that square. Where that is nothing
+  // along the warp, edges along the weft and diagonals are enough: all of a triangle lies on such lines between two of
+  // them.
+  const auto pokes = [&](double length) { return 0.25 * length * length > offset * offset - clear * clear; };
+  pair.features = {static_cast<T>(0.4 * tile.reach), pokes(weft) || pokes(warp), pokes(warp)};
+  return pair;
+}
+
+template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view) {
+  if (features_ == ContactFeatures::particles) return;
+  bool has_halo = false;
+  for (std::size_t t = 0; t < tiles_.size(); ++t) {
+    Tile& tile = tiles_[t];
+    const std::int64_t before = counts_.contacts;
+    for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
+      const Pair& pair = pairs_[p];
+      const double gap = pair.wake - tile.travelled - collider_travel_[pair.collider];
+      if (!(pair.features.wide || pair.in_haste) || gap > (pair.in_haste ? tile.reach : reach_of(tile, pair))) continue;
+      if (tile.block + 1 == view.blocks && !has_halo) {
+        kernel.fetch_halo(view);
+        has_halo = true;
+      }
+      kernel.contact_cells(view, tile.block, tile.first, tile.last, colliders_[pair.collider],
+                           pair.in_haste ? all_features(tile) : pair.features, &counts_.contacts);
+    }
+    tile.touched = tile.touched || counts_.contacts != before;
+  }
+  if (has_halo) kernel.return_halo(view);
+}
+
+template <class T>
+bool WovenContacts<T>::finish(WovenFinish<T> kernel, const WovenSheetView<T>& view, const WovenStep<T>& step) {
+  bool all_numbers = true;
+  for (Tile& tile : tiles_) {
+    const double way = std::sqrt(static_cast<double>(kernel(view, step, tile.block, tile.first, tile.last)));
+    all_numbers = all_numbers && way < k_world_radius;
+    // From where the tile was measured, contacts took it at most back and on to where it is now.
+    if (tile.touched) tile.travelled += tile.way + way;
+    tile.speed = way / static_cast<double>(step.h);
+  }
+  return all_numbers;
+}
+
+template class WovenContacts<float>;
+template class WovenContacts<double>;
+
+} // namespace tutu::cloth

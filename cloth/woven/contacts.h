@@ -1,0 +1,93 @@
+// Which tiles of a woven sheet meet which colliders, and when each pair has to be looked at. Private to the folder.
+#pragma once
+
+#include "cloth/state/frame.h"
+#include "cloth/state/solver_options.h"
+#include "cloth/woven/sheet.h"
+#include "proxies/query/collision_query.h"
+
+#include <vector>
+
+namespace tutu::cloth {
+
+/// The `hybrid` way: boxes of tiles against the swept boxes of colliders once a frame, closed form for whole vectors in
+/// each substep.
+///
+/// A tile is some rows of one block. Pairs that cannot have met since they were last measured are skipped, exactly:
+/// distance is 1-Lipschitz, so a pair at distance d stays apart until the tile's fastest particle and the collider have
+/// together travelled d. The same sum says when the frame's boxes no longer cover a tile; then it looks for colliders
+/// anew.
+template <class T> class WovenContacts {
+public:
+  /// `sheet`: of the garment, for its blocks.
+  WovenContacts(const Garment& garment, const SolverOptions& options, const WovenSheet<T>& sheet);
+
+  /// The cloth was put elsewhere: its speed so far says nothing.
+  void forget() {
+    for (Tile& tile : tiles_) tile.speed = 0.0;
+  }
+
+  void begin_frame(proxies::CollisionQuery& query, const FrameInput& input, const WovenSheet<T>& sheet);
+
+  /// Puts the colliders to `s` in (0, 1] of the frame, `h` seconds after the last call, and pushes the cloth out of
+  /// them. Returns false when a particle's place is no number.
+  bool resolve(proxies::CollisionQuery& query, const WovenKernel<T>& kernel, const WovenSheet<T>& sheet, double s,
+               double h);
+
+  /// After resolve: velocities by `kernel`, and how far each tile went. Returns false like resolve.
+  bool finish(WovenFinish<T> kernel, const WovenSheetView<T>& view, const WovenStep<T>& step);
+
+  const ContactCounts& counts() const { return counts_; }
+  BroadPhaseView broad_phase() const { return {boxes_, candidates_.begin, candidates_.colliders}; }
+
+private:
+  struct Tile {
+    int block = 0, first = 0, last = 0;            ///< rows first..last-1
+    double weft = 0.0, warp = 0.0, diagonal = 0.0; ///< m, the longest of a cell's edges at rest
+    double reach = 0.0;                            ///< m: no point of a cell is farther from a corner
+    double margin = 0.0;                           ///< m its particles may go before colliders are looked for again
+    double travelled = 0.0;                        ///< m since then, of its fastest particle
+    double way = 0.0;                              ///< m in this substep, before contacts
+    double speed = 0.0;                            ///< m/s in the last one
+    bool touched = false;                          ///< in this substep
+  };
+  struct Pair {
+    int collider = 0;
+    T rise = 0; ///< m
+    CellFeatures<T> features;
+    bool fits_through = false; ///< the collider, between two corners that a blow tears apart
+    bool in_haste = false;     ///< in this substep
+    double wake = 0.0;         ///< sum of travels at which the two may meet
+  };
+
+  void find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet);
+  void place(const Vec3& origin, double s, double h);
+  void sweep(const WovenSheet<T>& sheet, const Tile& tile, const Pair& pair);
+  void resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view);
+  /// Low cells are looked for within a fifth more than they are at rest, others within k_cell_stretch, m.
+  static double reach_of(const Tile& tile, const Pair& pair) {
+    return pair.features.high ? tile.reach : 2.0 * static_cast<double>(pair.features.around);
+  }
+  static CellFeatures<T> all_features(const Tile& tile) { return {static_cast<T>(0.5 * tile.reach), true, true}; }
+  /// How the cells of a tile are kept from a collider of this radius.
+  Pair pair_of(const Tile& tile, int collider) const;
+
+  double offset_ = 0.0; ///< m, what particles keep from colliders
+  ContactFeatures features_ = ContactFeatures::automatic;
+  bool swept_ = true;
+  std::vector<Tile> tiles_;
+  std::vector<proxies::Box> boxes_;
+  proxies::Candidates candidates_;
+  std::vector<int> begin_; ///< of each tile in pairs_; tiles + 1 entries
+  std::vector<Pair> pairs_;
+
+  const FrameInput* input_ = nullptr;
+  std::vector<proxies::Capsule> placed_, placed_before_;
+  std::vector<WovenCollider<T>> colliders_;
+  std::optional<WovenPlane<T>> ground_;
+  std::vector<double> collider_travel_;  ///< m since pairs were found; the ground, last, stays at 0
+  double s_before_ = 0.0, s_step_ = 0.0; ///< of the frame
+  ContactCounts counts_;
+};
+
+} // namespace tutu::cloth

@@ -1,0 +1,27 @@
+// Contact of a tile by time of impact, for steps in which the contact at the end alone could let cloth through. Private
+// to the folder.
+#pragma once
+
+#include "cloth/woven/sheet.h"
+#include "proxies/shapes.h"
+
+#include <cstdint>
+
+namespace tutu::cloth {
+
+/// A collider's way through a substep, and what the cloth keeps from it.
+struct SweptCollider {
+  proxies::Capsule start, end; ///< world
+  Vec3 spin = Vec3::Zero();    ///< rotation vector in the substep, rad
+  double offset = 0.0;         ///< m
+};
+
+/// Free particles of one block's rows first..last-1 (and, with `cells`, triangles of the cells to the next block and
+/// row) that touched the collider since the substep's start are put back to the side they touched: outside the plane
+/// through the point of touch, moved on with the surface. The contacts at the end of the substep go on from there.
+/// Plain and in double: it is asked for seldom. Returns how many were put back.
+template <class T>
+std::int64_t sweep_tile(const WovenSheet<T>& sheet, int block, int first, int last, const SweptCollider& collider,
+                        bool cells);
+
+} // namespace tutu::cloth

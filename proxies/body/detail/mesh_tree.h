@@ -1,0 +1,55 @@
+// FCL's tree of boxes over the triangles of a mesh that moves, and what is asked of it. FCL is not seen here.
+#pragma once
+
+#include "proxies/body/body_mesh.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace tutu::proxies {
+
+class MeshTree {
+public:
+  MeshTree(std::span<const Vec3> positions, std::span<const rig::Triangle> triangles);
+  ~MeshTree();
+
+  /// The vertices are there now. Boxes grow and shrink; the tree keeps its shape. Without its dipoles the tree cannot
+  /// answer winding_number.
+  void refit(const std::vector<Vec3>& positions, bool with_dipoles);
+
+  // Questions may be asked from several threads at once, not during refit.
+
+  /// The nearest point of the triangles, where one is nearer than `within`. Triangles with skip[triangle] are not
+  /// there; an empty span leaves out none.
+  std::optional<MeshPoint> nearest(const Vec3& point, double within, std::span<const std::uint8_t> skip) const;
+
+  /// The winding number, far parts of the surface taken for dipoles [Barill et al. 2018]: those seen from more than
+  /// `beta` times their radius away.
+  double winding_number(const Vec3& point, double beta) const;
+
+  bool box_holds(const Vec3& point) const; ///< the box of the whole mesh
+
+  /// Appends the triangles that a capsule touches, rising.
+  void touching(const Capsule& capsule, std::vector<int>& triangles) const;
+
+private:
+  struct Boxes;
+  struct Dipole {
+    Vec3 centre = Vec3::Zero();  ///< mean of the triangles' middles, by area
+    Vec3 area = Vec3::Zero();    ///< sum of area normals, m2
+    double radius_squared = 0.0; ///< m2; no corner is farther from the centre
+    double weight = 0.0;         ///< sum of areas, m2
+    int first_child = 0;         ///< as in the tree: the next one is its sibling; below 0: -1 - triangle
+  };
+
+  void find_dipoles();
+
+  std::span<const Vec3> positions_;
+  std::span<const rig::Triangle> triangles_;
+  std::unique_ptr<Boxes> boxes_;
+  std::vector<Dipole> dipoles_; ///< of each node of the tree
+};
+
+} // namespace tutu::proxies

@@ -1,0 +1,82 @@
+// How cloth asks colliders: one interface, one meaning, several ways.
+//
+// A frame:    find_candidates(swept colliders, points, reach)      broad phase, once, for particles
+//             find_for_boxes(swept colliders, boxes)               and for whatever has a box: edges, triangles, tiles
+// a substep:  place(colliders at this moment)                      then, for each candidate pair,
+//             contact(point, collider)                             narrow phase: distance, normal, closest point
+//
+// Against the true body in the place of proxies: make_mesh_query, and place_body beside place.
+#pragma once
+
+#include "proxies/body/body_mesh.h"
+#include "proxies/contact.h"
+#include "proxies/motion/collider_set.h"
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace tutu::proxies {
+
+/// Which colliders each point (or box) may meet, in compressed rows: those of point i are colliders[begin[i]] ..
+/// colliders[begin[i + 1] - 1], rising. Memory is reused from call to call.
+struct Candidates {
+  std::vector<int> begin; ///< points + 1 entries
+  std::vector<int> colliders;
+
+  std::span<const int> of(int point) const {
+    return {colliders.data() + begin[point], static_cast<std::size_t>(begin[point + 1] - begin[point])};
+  }
+};
+
+class CollisionQuery {
+public:
+  virtual ~CollisionQuery() = default;
+
+  virtual std::string_view name() const = 0; ///< as on the command line: one of k_backend_names
+
+  /// For each point every collider whose surface comes within `reach` (m, >= 0) of it at any time of the frame. May
+  /// hold more, never fewer. The ground (index size()) is always a candidate where there is one. Points and colliders
+  /// must be finite.
+  virtual void find_candidates(const SweptColliders& colliders, std::span<const Vec3> points, double reach,
+                               Candidates& out) = 0;
+
+  /// For each box (world, m, already grown by whatever reach is wanted) every collider whose swept box touches it. May
+  /// hold more, never fewer. The ground as above. Boxes must be finite and not empty.
+  virtual void find_for_boxes(const SweptColliders& colliders, std::span<const Box> boxes, Candidates& out) = 0;
+
+  /// Puts the colliders where they are now. Same order and count as in find_candidates.
+  virtual void place(std::span<const Capsule> colliders, const std::optional<Plane>& ground) = 0;
+
+  /// One point against one placed collider. Signed distance and conventions of proxies/contact.h.
+  virtual Contact contact(const Vec3& point, int collider) const = 0;
+
+  /// Puts the true body where it is at `s` in [0, 1] of the frame. Only for the backend that knows it.
+  virtual void place_body(const SweptColliders&, double /*s*/) {}
+
+  /// How far the true body's surface goes from the frame's start to its end where it is nearest to `point` now, m.
+  virtual Vec3 body_way(const Vec3& /*point*/) const { return Vec3::Zero(); }
+};
+
+enum class Backend {
+  fcl,    ///< FCL tree, per particle; FCL distance asked in the one sound way
+  hybrid, ///< FCL tree or a plain list, whichever is quicker, per run of particles; closed form in double
+  brute,  ///< every pair, closed form in double: the twin that tests compare with
+  mesh    ///< no proxies: the true, skinned body (BodyMesh), for reference runs
+};
+
+/// As in scene files and on the command line, in the order of Backend.
+inline constexpr std::array<std::string_view, 4> k_backend_names = {"fcl", "hybrid", "brute", "mesh"};
+inline constexpr std::span k_proxy_backend_names = std::span(k_backend_names).first<3>(); ///< those of make_query
+Backend backend_named(std::string_view name); ///< one of k_backend_names; std::invalid_argument for any other
+
+/// std::invalid_argument for Backend::mesh, which needs a body.
+std::unique_ptr<CollisionQuery> make_query(Backend backend);
+
+/// Backend::mesh: the body in all poses that SweptColliders::body_start and body_end give its vertices, and the ground.
+/// There are no other colliders.
+std::unique_ptr<CollisionQuery> make_mesh_query(BodyMesh body);
+
+} // namespace tutu::proxies

@@ -1,0 +1,206 @@
+#include "rig/io/json_file.h"
+
+#include "rig/io/file_io.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace tutu {
+namespace {
+
+using nlohmann::json;
+
+std::string shortened(const json& value) {
+  constexpr std::size_t k_longest = 60;
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > k_longest) text = text.substr(0, k_longest) + "...";
+  return text;
+}
+
+std::string listed(std::span<const std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+/// Number for a message: as short as it can be.
+std::string shown(double value) { return json(value).dump(); }
+
+/// "line 3, column 14" of a byte offset that the parser reports.
+std::string place_of(std::string_view text, std::size_t offset) {
+  offset = std::min(offset, text.size());
+  const std::string_view before = text.substr(0, offset);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t start = before.rfind('\n');
+  const std::size_t column = start == std::string_view::npos ? offset : offset - start - 1;
+  return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
+}
+
+/// "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ..." -> "syntax error ...".
+std::string reason_of(const char* what) {
+  std::string text = what;
+  if (const std::size_t bracket = text.find("] "); bracket != std::string::npos) text = text.substr(bracket + 2);
+  const std::size_t position = text.find(": ");
+  return position == std::string::npos ? text : text.substr(position + 2);
+}
+
+/// Where a number stands that is too large to be read: the parser says only its text, between quotes.
+std::string place_of_number(std::string_view text, const std::string& reason) {
+  const std::size_t start = reason.find('\''), end = reason.rfind('\'');
+  if (start == std::string::npos || end <= start) return "";
+  const std::size_t offset = text.find(reason.substr(start + 1, end - start - 1));
+  return offset == std::string_view::npos ? "" : place_of(text, offset + 1);
+}
+
+} // namespace
+
+JsonValue JsonValue::read(const std::filesystem::path& file) { return parse(read_file(file), file.string()); }
+
+JsonValue JsonValue::parse(std::string_view text, std::string name) {
+  auto document = std::make_shared<Document>();
+  document->file = std::move(name);
+  if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+    throw InputError(document->file, "", "an empty file", "JSON");
+
+  constexpr int k_deepest = 64; // far deeper than any of our files; keeps a hostile file off the stack
+  std::vector<std::set<std::string>> open_objects;
+  const json::parser_callback_t check = [&](int depth, json::parse_event_t event, json& parsed) {
+    if (depth > k_deepest) throw InputError(document->file, "", "more than 64 levels of nesting", "at most 64");
+    if (event == json::parse_event_t::object_start) open_objects.emplace_back();
+    if (event == json::parse_event_t::object_end) open_objects.pop_back();
+    if (event == json::parse_event_t::key && !open_objects.back().insert(parsed.get<std::string>()).second)
+      throw InputError(document->file, "key \"" + parsed.get<std::string>() + "\"", "it twice in one object",
+                       "it once");
+    return true;
+  };
+  try {
+    document->root = json::parse(text, check, true, true);
+  } catch (const json::parse_error& error) {
+    throw InputError(document->file, place_of(text, error.byte), reason_of(error.what()), "JSON");
+  } catch (const json::exception& error) {
+    const std::string reason = reason_of(error.what());
+    throw InputError(document->file, place_of_number(text, reason), reason, "JSON with finite numbers");
+  }
+  const json* root = &document->root;
+  return {std::move(document), root, ""};
+}
+
+JsonValue JsonValue::child(const std::string& step, const json& node) const {
+  return {document_, &node, pointer_ + "/" + step};
+}
+
+InputError JsonValue::error(std::string expected) const { return error(shortened(*node_), std::move(expected)); }
+
+InputError JsonValue::error(std::string found, std::string expected) const {
+  return {document_->file, pointer_.empty() ? "/" : pointer_, std::move(found), std::move(expected)};
+}
+
+bool JsonValue::has(const char* key) const { return find(key).has_value(); }
+
+std::optional<JsonValue> JsonValue::find(const char* key) const {
+  if (!node_->is_object()) throw error("an object");
+  const auto found = node_->find(key);
+  if (found == node_->end()) return std::nullopt;
+  return child(key, *found);
+}
+
+JsonValue JsonValue::at(const char* key) const {
+  if (auto value = find(key)) return *value;
+  throw error("no key \"" + std::string(key) + "\"", "it to be given");
+}
+
+std::vector<JsonValue> JsonValue::items() const {
+  if (!node_->is_array()) throw error("an array");
+  std::vector<JsonValue> all;
+  all.reserve(node_->size());
+  for (std::size_t i = 0; i < node_->size(); ++i) all.push_back(child(std::to_string(i), (*node_)[i]));
+  return all;
+}
+
+std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
+  if (!node_->is_object()) throw error("an object");
+  std::vector<std::pair<std::string, JsonValue>> all;
+  for (const auto& [key, value] : node_->items()) all.emplace_back(key, child(key, value));
+  return all;
+}
+
+void JsonValue::only_keys(std::initializer_list<std::string_view> known) const {
+  if (!node_->is_object()) throw error("an object");
+  for (const auto& [key, value] : node_->items()) {
+    if (key == "$schema" || key == "comment") continue;
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      throw child(key, value).error("unknown key \"" + key + "\"", "one of: " + listed({known.begin(), known.size()}));
+  }
+}
+
+std::string JsonValue::string() const {
+  if (!node_->is_string()) throw error("a string");
+  return node_->get<std::string>();
+}
+
+std::string JsonValue::string_among(std::span<const std::string_view> choices) const {
+  std::string value = string();
+  if (std::find(choices.begin(), choices.end(), value) == choices.end()) throw error("one of: " + listed(choices));
+  return value;
+}
+
+bool JsonValue::boolean() const {
+  if (!node_->is_boolean()) throw error("true or false");
+  return node_->get<bool>();
+}
+
+double JsonValue::number() const {
+  if (!node_->is_number()) throw error("a number");
+  const double value = node_->get<double>();
+  if (!(std::abs(value) <= k_largest_number)) throw error("a finite number within +-1e9");
+  return value;
+}
+
+double JsonValue::number_in(double lowest, double highest) const {
+  if (!node_->is_number() || !(number() >= lowest && number() <= highest))
+    throw error("a number from " + shown(lowest) + " to " + shown(highest));
+  return number();
+}
+
+double JsonValue::positive() const {
+  if (!node_->is_number() || !(number() > 0.0)) throw error("a number above 0");
+  return number();
+}
+
+double JsonValue::non_negative() const {
+  if (!node_->is_number() || !(number() >= 0.0)) throw error("a number, 0 or above");
+  return number();
+}
+
+int JsonValue::integer_in(int lowest, int highest) const {
+  const bool good = node_->is_number_integer() && number() >= lowest && number() <= highest;
+  if (!good) throw error("a whole number from " + std::to_string(lowest) + " to " + std::to_string(highest));
+  return node_->get<int>();
+}
+
+std::vector<double> JsonValue::numbers() const {
+  std::vector<double> all;
+  for (const JsonValue& item : items()) all.push_back(item.number());
+  return all;
+}
+
+std::vector<double> JsonValue::numbers(std::size_t count) const {
+  if (!node_->is_array() || node_->size() != count) throw error("an array of " + std::to_string(count) + " numbers");
+  return numbers();
+}
+
+Vec3 JsonValue::vec3() const {
+  const std::vector<double> v = numbers(3);
+  return {v[0], v[1], v[2]};
+}
+
+Quat JsonValue::rotation() const {
+  const std::vector<double> v = numbers(4);
+  const Quat q(v[3], v[0], v[1], v[2]);
+  if (std::abs(q.norm() - 1.0) > 1e-3) throw error("a unit quaternion [x, y, z, w]");
+  // Already unit to the last digits: keep the bits, so that what was written is what is read.
+  return std::abs(q.squaredNorm() - 1.0) < 1e-14 ? q : q.normalized();
+}
+
+} // namespace tutu

@@ -1,0 +1,13 @@
+// tutu-cell: what `tutu cell` does, as a program that links nothing that draws.
+#include "src/commands/commands.h"
+
+int main(int argc, char** argv) {
+  using namespace tutu::app;
+  CLI::App app{"tutu-cell cell: one setting of a scene, measured; the command of tutu for machines without a screen."};
+  app.set_version_flag("--version", "tutu-cell " TUTU_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  int status = k_ok;
+  add_cell(app, status);
+  return run_program(app, argc, argv, status);
+}

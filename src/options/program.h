@@ -1,0 +1,16 @@
+// What every program of the house does around its commands: exit statuses, and errors as one message.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace tutu::app {
+
+/// Exit statuses.
+inline constexpr int k_ok = 0;
+inline constexpr int k_not_met = 1;   ///< a stated tolerance is not met, or the simulation diverged
+inline constexpr int k_bad_input = 2; ///< bad usage or input
+
+/// Parses and runs. `status` is what the command that ran has set; what is thrown becomes a message and k_bad_input.
+int run_program(CLI::App& app, int argc, const char* const* argv, const int& status);
+
+} // namespace tutu::app

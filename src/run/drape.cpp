@@ -1,0 +1,111 @@
+#include "src/run/drape.h"
+#include "cloth/state/tolerances.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tutu::app {
+namespace {
+
+constexpr double k_pose_seconds = 1.0; ///< s from the rest pose to the first pose; slow enough for cloth to follow
+constexpr double k_drape_drag =
+    4.0; ///< 1/s; near critical for a skirt's swing (about 1 Hz), so that it settles without ringing
+
+double fastest_of(const Session& session) {
+  double fastest = 0.0;
+  for (std::size_t g = 0; g < session.scene().garments.size(); ++g)
+    for (const Vec3& v : session.garment(static_cast<int>(g)).particles().velocities)
+      fastest = std::max(fastest, v.norm());
+  return fastest;
+}
+
+} // namespace
+
+DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress) {
+  Session session(scene);
+  const std::vector<Transform>& rest = scene.character.skeleton.rest_local;
+  const auto first = scene.clip.key(0);
+  std::vector<Transform> local(rest.size());
+
+  const int total = static_cast<int>(std::ceil(longest / session.frame_seconds()));
+  const int posing = std::min(total, static_cast<int>(std::ceil(k_pose_seconds / session.frame_seconds())));
+  DrapeResult result;
+  for (int frame = 0; frame < total && !session.failure(); ++frame) {
+    const double u = std::min(1.0, static_cast<double>(frame + 1) / posing);
+    const double s = u * u * (3.0 - 2.0 * u); // starts and stops without a jerk
+    for (std::size_t j = 0; j < local.size(); ++j) local[j] = s < 1.0 ? interpolate(rest[j], first[j], s) : first[j];
+    session.advance_to(local, k_drape_drag);
+    result.fastest = fastest_of(session);
+    if (!progress(frame + 1, total)) break;
+    if (frame >= posing && result.fastest < cloth::k_settled_speed) break;
+  }
+  result.seconds = session.frame() * session.frame_seconds();
+  result.failure = session.failure();
+  for (std::size_t g = 0; g < scene.garments.size(); ++g)
+    result.positions.push_back(session.garment(static_cast<int>(g)).particles().positions);
+  return result;
+}
+
+std::uint64_t drape_fingerprint(const Scene& scene) {
+  // Everything becomes numbers, and numbers become a hash: as good as comparing the files, and blind to their layout.
+  // Rounded far below any length that matters: another processor's sine may differ in its last bit.
+  cloth::Particles numbers;
+  const auto rounded = [](double v) { return std::round(v * 1e8) + 0.0; };
+  const auto add = [&](double a, double b = 0.0, double c = 0.0) {
+    numbers.positions.emplace_back(rounded(a), rounded(b), rounded(c));
+  };
+  const auto add_point = [&](const Vec3& p) { add(p.x(), p.y(), p.z()); };
+  for (const cloth::Garment& garment : scene.garments) {
+    for (const Vec3& p : garment.rest_positions) add_point(p);
+    for (const cloth::Spring& spring : garment.springs) add(spring.i, spring.j, spring.stiffness);
+    for (const cloth::Pin& pin : garment.pins) add(pin.particle, pin.attachment);
+    for (const cloth::Seam& seam : garment.seams) add(seam.i, seam.j);
+    const cloth::Fabric& f = garment.fabric;
+    add(f.density, f.drag, f.contact_offset());
+    add(1e3 * f.bend, garment.pressed); // in mN m, above the rounding
+  }
+  for (const std::vector<int>& joints : scene.attachment_joints)
+    for (const int joint : joints) add(joint);
+  for (const SkinPins& pins : scene.skin_pins)
+    for (const SkinPins::Binding& binding : pins.bindings) {
+      add(binding.pin, binding.triangle);
+      add_point(binding.weights);
+      add_point(binding.offset);
+    }
+  const auto add_pose = [&](std::span<const Transform> pose) {
+    for (const Transform& t : pose) {
+      add_point(t.translation);
+      add(t.rotation.x(), t.rotation.y(), t.rotation.z());
+    }
+  };
+  add_pose(scene.character.skeleton.rest_local);
+  add_pose(scene.clip.key(0));
+  for (const proxies::Proxy& proxy : scene.proxies) {
+    if (!proxy.enabled) continue;
+    add(proxy.radius, proxy.friction);
+    if (proxy.taper != 0.0) add(proxy.taper); // so that the hash of sets without stays what it was
+    for (const proxies::Anchor* anchor : {&proxy.a, &proxy.b})
+      for (int k = 0; k < anchor->count; ++k) {
+        add(anchor->joints[k], anchor->weights[k]);
+        add_point(anchor->points[k]);
+      }
+  }
+  const RunSettings& d = scene.settings;
+  add(scene.ground_height.value_or(0.0), scene.ground_height ? 1.0 : 0.0);
+  add(d.frames_per_second, d.substeps, d.solver == cloth::SolverKind::xpbd ? 1.0 : 0.0);
+  // Without these the hash stays that of drapes made before there were any.
+  if (d.self_collision) add(1.0);
+  if (d.backend == proxies::Backend::mesh) add(2.0);
+  if (d.features != cloth::ContactFeatures::automatic) add(3.0, static_cast<double>(d.features));
+  if (!d.swept) add(4.0);
+  if (d.passes != 1) add(5.0, d.passes);
+  if (d.double_precision) add(6.0);
+  const bool meets_skin =
+      d.backend == proxies::Backend::mesh || std::any_of(scene.skin_pins.begin(), scene.skin_pins.end(),
+                                                         [](const SkinPins& pins) { return !pins.bindings.empty(); });
+  if (meets_skin && scene.character.skin.method != rig::Skinning::linear)
+    add(7.0, static_cast<double>(scene.character.skin.method));
+  return cloth::state_hash(numbers);
+}
+
+} // namespace tutu::app

@@ -1,0 +1,26 @@
+// Garments that settle on the still body: where a run starts from.
+#pragma once
+
+#include "src/run/session.h"
+
+#include <functional>
+#include <optional>
+
+namespace tutu::app {
+
+/// Garments settled on the still body, in two phases: the body goes from its rest pose to the clip's first pose (the
+/// garments are built around the rest pose), then stands until no particle is faster than k_settled_speed or `longest`
+/// has passed.
+struct DrapeResult {
+  GarmentPositions positions; ///< world, m, one vector a garment
+  double seconds = 0.0;       ///< simulated
+  double fastest = 0.0;       ///< m/s at the end
+  std::optional<SessionFailure> failure;
+};
+/// `progress(done, total)` is called each frame; returning false stops (the positions so far are returned).
+DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress);
+
+/// Of everything a drape depends on: garments, first pose, proxies, ground, solver settings.
+std::uint64_t drape_fingerprint(const Scene& scene);
+
+} // namespace tutu::app

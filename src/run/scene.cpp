@@ -1,0 +1,27 @@
+#include "src/run/scene.h"
+
+#include "rig/error.h"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <stdexcept>
+
+namespace tutu::app {
+
+proxies::BodyMesh body_of(const rig::Character& character) {
+  try {
+    return {character.mesh.positions, character.mesh.triangles};
+  } catch (const std::invalid_argument& unusable) {
+    throw InputError(character.file + ": " + unusable.what(), "", "", "");
+  }
+}
+
+int frames_of(const Scene& scene) {
+  const double frames = std::round(scene.clip.duration() * scene.settings.frames_per_second);
+  if (!(frames <= k_most_frames))
+    throw InputError(scene.file, "/motion", fmt::format("{:.6g} frames", frames),
+                     fmt::format("at most {}", k_most_frames));
+  return std::max(1, static_cast<int>(frames));
+}
+
+} // namespace tutu::app

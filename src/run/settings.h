@@ -1,0 +1,22 @@
+// How a scene is simulated: all that may be another without the scene being another.
+#pragma once
+
+#include "cloth/state/solver_options.h"
+#include "proxies/query/collision_query.h"
+
+namespace tutu::app {
+
+inline constexpr int k_most_threads = 256;
+
+struct RunSettings : cloth::SolverOptions {
+  int frames_per_second = 60;
+  int substeps = 10;             ///< a frame,
+  bool adaptive_substeps = true; ///< and more where something moves too fast for them
+  int threads = 1;               ///< that step garments side by side; never more than there are garments
+  proxies::Backend backend = proxies::Backend::hybrid;
+
+  double frame_seconds() const { return 1.0 / frames_per_second; }
+  bool operator==(const RunSettings&) const = default;
+};
+
+} // namespace tutu::app

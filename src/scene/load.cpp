@@ -1,0 +1,122 @@
+#include "src/scene/load.h"
+
+#include "cloth/garment/garment_file.h"
+#include "proxies/proxy_file.h"
+#include "rig/error.h"
+#include "rig/import/import.h"
+
+#include <cstdlib>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace tutu::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A clip made for `source` on the character; what found no joint there becomes a note.
+rig::Clip retargeted(const rig::Clip& clip, const rig::Skeleton& source, const rig::Skeleton& skeleton,
+                     const fs::path& file, std::vector<std::string>& notes) {
+  std::vector<std::string> unmatched;
+  rig::Clip result = rig::retarget(clip, source, skeleton, &unmatched);
+  if (!unmatched.empty())
+    notes.push_back(fmt::format("{}: no joint here for {}", file.filename().string(), fmt::join(unmatched, ", ")));
+  return result;
+}
+
+/// Puts the clip on the character, by way of the skeleton it was made for when that is another one.
+rig::Clip clip_for(const ClipMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
+  const rig::RawClip raw = rig::read_clip(motion.clip);
+  if (!motion.retarget_from) return rig::build_clip(raw, skeleton);
+  const rig::Skeleton source = rig::import_character(*motion.retarget_from).character.skeleton;
+  return retargeted(rig::build_clip(raw, source), source, skeleton, motion.clip, notes);
+}
+
+rig::Clip clip_for(const MocapMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
+  rig::Mocap take = rig::read_bvh(motion.bvh, motion.options);
+  rig::rename_joints(take.skeleton, motion.joints, motion.bvh.string());
+  return retargeted(take.clip, take.skeleton, skeleton, motion.bvh, notes);
+}
+
+const rig::RawClip& own_animation(const OwnMotion& motion, const rig::Import& import, const std::string& scene_file) {
+  const auto& clips = import.clips;
+  const auto fail = [&](const std::string& found) {
+    std::string names;
+    for (const rig::RawClip& clip : clips) names += (names.empty() ? "" : ", ") + clip.name;
+    const std::string expected =
+        clips.empty() ? "a character with animations" : fmt::format("0 to {}, or one of: {}", clips.size() - 1, names);
+    throw InputError(scene_file, "/motion/animation", found, expected);
+  };
+  if (const auto* index = std::get_if<int>(&motion.animation)) {
+    if (*index >= static_cast<int>(clips.size())) fail(std::to_string(*index));
+    return clips[*index];
+  }
+  const std::string& name = std::get<std::string>(motion.animation);
+  for (const rig::RawClip& clip : clips)
+    if (clip.name == name) return clip;
+  fail('"' + name + '"');
+  return clips.front(); // not reached: fail() throws
+}
+
+rig::Clip load_motion(const SceneDescription& description, const rig::Import& import, std::vector<std::string>& notes) {
+  const rig::Skeleton& skeleton = import.character.skeleton;
+  if (const auto* own = std::get_if<OwnMotion>(&description.motion))
+    return rig::build_clip(own_animation(*own, import, description.file.string()), skeleton);
+  if (const auto* texts = std::get_if<rig::ThreeTexts>(&description.motion)) {
+    std::string unit_note;
+    rig::Clip clip = rig::build_clip(rig::read_three_texts(*texts, skeleton, &unit_note), skeleton);
+    if (!unit_note.empty()) notes.push_back(unit_note);
+    return clip;
+  }
+  if (const auto* mocap = std::get_if<MocapMotion>(&description.motion)) return clip_for(*mocap, skeleton, notes);
+  return clip_for(std::get<ClipMotion>(description.motion), skeleton, notes);
+}
+
+} // namespace
+
+WornGarment put_on(const GarmentEntry& entry, const rig::Character& character) {
+  return wear(
+      cloth::fitted(cloth::resampled(cloth::read_garment(entry.file), entry.resolution), entry.scale, entry.offset),
+      character);
+}
+
+LoadedScene load_scene(const SceneDescription& description) {
+  LoadedScene scene;
+  scene.file = description.file.string();
+  scene.files = description;
+  scene.settings = description.settings;
+  scene.ground_height = description.ground_height;
+  rig::Import import = rig::import_character(description.character, {description.max_influences});
+  for (const std::string& note : import.report.notes)
+    scene.notes.push_back(description.character.filename().string() + ": " + note);
+  scene.clip = load_motion(description, import, scene.notes);
+  if (description.interpolation) rig::set_interpolation(scene.clip, *description.interpolation);
+  scene.character = std::move(import.character);
+  rig::set_skinning(scene.character.skin, scene.character.mesh, description.skinning, description.character.string());
+
+  if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, scene.character.skeleton);
+  for (const GarmentEntry& entry : description.garments) {
+    WornGarment worn = put_on(entry, scene.character);
+    scene.attachment_joints.push_back(std::move(worn.joints));
+    scene.skin_pins.push_back(std::move(worn.skin_pins));
+    scene.garments.push_back(std::move(worn.garment));
+  }
+  return scene;
+}
+
+fs::path assets_folder() {
+  if (const char* chosen = std::getenv("TUTU_ASSETS")) {
+    if (!fs::is_directory(chosen)) throw InputError("$TUTU_ASSETS", "", chosen, "a folder");
+    return chosen;
+  }
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  for (const char* relative : {"../share/tutu/assets", "../../assets"}) {
+    const fs::path folder = (program.parent_path() / relative).lexically_normal();
+    if (fs::is_directory(folder, error)) return folder;
+  }
+  throw InputError("", "assets", "none beside " + program.string(),
+                   "an installed program, a checkout, or $TUTU_ASSETS");
+}
+
+} // namespace tutu::app

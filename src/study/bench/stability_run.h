@@ -1,0 +1,42 @@
+// Runs a stability scene as a session would run it: guarded, with adaptive substeps; and judges the end.
+#pragma once
+
+#include "cloth/solver.h"
+#include "proxies/query/collision_query.h"
+#include "src/study/bench/stability_scenes.h"
+
+#include <string>
+#include <vector>
+
+namespace tutu::app {
+
+struct StabilitySetup {
+  cloth::SolverOptions solver;
+  proxies::Backend backend = proxies::Backend::hybrid;
+  int substeps = 10;    ///< a frame,
+  bool adaptive = true; ///< and more where something moves too fast
+};
+
+struct StabilityRun {
+  int frames = 0;             ///< done
+  std::string failure;        ///< why it stopped early; empty when it did not
+  int crossings = 0;          ///< CrossingCounter
+  int pierced = 0;            ///< triangles, summed over frames
+  int pierced_at_end = 0;     ///< triangles
+  double stretch = 0.0;       ///< p99 of the lengthening of grid edges, at the end
+  double worst_stretch = 0.0; ///< of any edge in any frame
+  double depth = 0.0;         ///< m, of the deepest particle, at the end
+  double speed = 0.0;         ///< m/s, of the fastest particle, at the end
+  double turn_rate = 0.0;     ///< rad/s about the vertical axis through the origin, at the end, of the cloth as a whole
+  int recoveries = 0;
+  int most_substeps = 0;
+  double ms = 0.0; ///< a frame, of the thread's time, in the middle
+  cloth::Particles end;
+};
+
+StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& setup);
+
+/// What does not hold, in words; none: the run passed.
+std::vector<std::string> broken_limits(const StabilityScene& scene, const StabilityRun& run);
+
+} // namespace tutu::app

@@ -1,0 +1,132 @@
+#include "src/study/chart/setting.h"
+
+#include "proxies/proxy_file.h"
+#include "src/run/session.h"
+#include "src/scene/load.h"
+#include "src/study/chart/same_cloth.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace tutu::app {
+namespace {
+
+constexpr double k_easing_drag = 50.0; // 1/s: cloth sinks at 0.2 m/s and swings no more
+
+std::string on_off(bool on) { return on ? "on" : "off"; }
+
+std::string_view name_of(proxies::Backend backend) {
+  return proxies::k_backend_names[static_cast<std::size_t>(backend)];
+}
+std::string_view name_of(cloth::ContactFeatures features) {
+  return cloth::k_contact_features_names[static_cast<std::size_t>(features)];
+}
+
+/// What people call a value, where the value alone does not say it.
+std::string in_words(const std::string& column, const std::string& value) {
+  if (column == "solver" || column == "backend") return value;
+  if (column == "substeps" || column == "passes" || column == "threads") return value + " " + column;
+  if (column == "frames_per_second") return value + " frames/s";
+  if (column == "resolution") return value + " x cells";
+  if (column == "proxies") {
+    if (value == k_no_proxies) return "no proxies";
+    return value == k_own_proxies ? "the scene's proxies" : std::filesystem::path(value).stem().string();
+  }
+  if (column == "features") return value == "auto" ? "automatic features" : value;
+  std::string name = column;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name + " " + value;
+}
+
+} // namespace
+
+Setting own_setting(const RunSettings& of_scene) {
+  Setting setting;
+  static_cast<RunSettings&>(setting) = of_scene;
+  setting.name = "default";
+  return setting;
+}
+
+const std::vector<std::string>& setting_columns() {
+  static const std::vector<std::string> columns = {
+      "solver",   "backend", "substeps", "adaptive_substeps", "frames_per_second", "resolution", "proxies",
+      "features", "swept",   "passes",   "double_precision",  "self_collision",    "threads"};
+  return columns;
+}
+
+std::vector<std::string> setting_values(const Setting& s) {
+  return {std::string(cloth::name_of(s.solver)),
+          std::string(name_of(s.backend)),
+          std::to_string(s.substeps),
+          on_off(s.adaptive_substeps),
+          std::to_string(s.frames_per_second),
+          fmt::format("{:g}", s.resolution),
+          s.proxies,
+          std::string(name_of(s.features)),
+          on_off(s.swept),
+          std::to_string(s.passes),
+          on_off(s.double_precision),
+          on_off(s.self_collision),
+          std::to_string(s.threads)};
+}
+
+std::string difference(const SettingValues& values, const SettingValues& others) {
+  std::string text;
+  for (std::size_t k = 0; k < values.size(); ++k)
+    if (values[k] != others[k]) text += (text.empty() ? "" : ", ") + in_words(setting_columns()[k], values[k]);
+  return text;
+}
+
+std::vector<std::string> setting_options(const SettingValues& values, const SettingValues& own) {
+  std::vector<std::string> options;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    if (values[k] == own[k]) continue;
+    std::string name = "--" + setting_columns()[k];
+    std::replace(name.begin(), name.end(), '_', '-');
+    options.push_back(name);
+    options.push_back(values[k]);
+  }
+  return options;
+}
+
+LoadedScene with_setting(const LoadedScene& scene, const Setting& setting) {
+  LoadedScene result = scene;
+  result.settings = setting;
+  SceneFiles& files = result.files;
+  if (setting.proxies == k_no_proxies) {
+    files.proxies.reset();
+    result.proxies.clear();
+  } else if (setting.proxies != k_own_proxies) {
+    files.proxies = setting.proxies;
+    result.proxies = proxies::read_proxies(setting.proxies, result.character.skeleton);
+  }
+  if (setting.resolution == 1.0) return result;
+  for (std::size_t g = 0; g < files.garments.size(); ++g) {
+    files.garments[g].resolution *= setting.resolution;
+    WornGarment worn = put_on(files.garments[g], result.character);
+    result.garments[g] = std::move(worn.garment);
+    result.attachment_joints[g] = std::move(worn.joints);
+    result.skin_pins[g] = std::move(worn.skin_pins);
+  }
+  return result;
+}
+
+GarmentPositions start_at_resolution(const LoadedScene& scene, const GarmentPositions& start, double resolution) {
+  if (resolution == 1.0) return start;
+  Setting setting = own_setting(scene.settings);
+  setting.resolution = resolution;
+  const LoadedScene other = with_setting(scene, setting);
+  GarmentPositions positions;
+  for (std::size_t g = 0; g < start.size(); ++g)
+    positions.push_back(positions_on(scene.garments[g], start[g], other.garments[g]));
+  Session session(other);
+  session.start(positions);
+  const auto pose = other.clip.key(0);
+  for (int f = 0; f < other.settings.frames_per_second && !session.failure(); ++f)
+    session.advance_to(pose, k_easing_drag);
+  for (std::size_t g = 0; g < start.size(); ++g)
+    positions[g] = session.garment(static_cast<int>(g)).particles().positions;
+  return positions;
+}
+
+} // namespace tutu::app

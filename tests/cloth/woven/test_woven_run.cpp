@@ -1,0 +1,246 @@
+// Whole frames of the default solver against the twin, which asks every particle, edge and face for every collider in
+// every substep: what the solver skips must not have mattered.
+#include "cloth/solver.h"
+#include "cloth/woven/sheet.h"
+#include "tests/support/simd_targets.h"
+#include "tests/support/swinging_limbs.h"
+#include "tests/support/woven_cases.h"
+#include "tests/support/woven_twin.h"
+
+#include <gtest/gtest.h>
+
+using namespace tutu;
+using namespace tutu::cloth;
+
+namespace {
+
+constexpr int k_period = 40; // frames
+
+/// One frame of xpbd.h, contacts by brute force. Returns false when an edge broke.
+bool frame_of(test::WovenTwin& twin, const Garment& garment, const FrameInput& input, int blocks, ContactFeatures asked,
+              int passes, std::int64_t* contacts) {
+  constexpr int k_tile = 8;
+  const double h = input.seconds / input.substeps, offset = garment.fabric.contact_offset();
+  WovenStep<double> step;
+  step.h = h;
+  for (int axis = 0; axis < 3; ++axis) step.gravity[axis] = input.gravity[axis];
+  step.kept = 1.0 / (1.0 + h * (garment.fabric.drag + input.extra_drag));
+  step.fastest = k_fastest_particle;
+  step.passes = passes;
+  const auto close = [&] {
+    for (const Seam& seam : garment.seams) {
+      const double wi = twin.inverse_mass(seam.i), wj = twin.inverse_mass(seam.j);
+      twin.join(seam.i, seam.j, wi == 0.0 && wj == 0.0 ? 0.5 : wi / (wi + wj)); // the common centre of mass
+    }
+  };
+  const auto for_tiles = [&](const auto& f) {
+    for (int block = 0; block < blocks; ++block)
+      for (int first = 0; first < garment.rows; first += k_tile)
+        f(block, first, std::min(first + k_tile, garment.rows));
+  };
+  for (int substep = 0; substep < input.substeps; ++substep) {
+    const double before = static_cast<double>(substep) / input.substeps, s = (substep + 1.0) / input.substeps;
+    twin.predict(step);
+    for (std::size_t k = 0; k < garment.pins.size(); ++k) {
+      const int i = garment.pins[k].particle;
+      twin.x[i] = (1.0 - s) * input.pins_start[k] + s * input.pins_end[k];
+      twin.v[i] = (twin.x[i] - twin.was[i]) / h;
+    }
+    close();
+    if (!twin.constraints(step)) return false;
+    close();
+    std::vector<test::TwinCollider> colliders;
+    for (int k = 0; k < input.colliders.size(); ++k) {
+      test::TwinCollider c;
+      c.now = proxies::capsule_at(input.colliders.start[k], input.colliders.end[k], s);
+      c.before = proxies::capsule_at(input.colliders.start[k], input.colliders.end[k], before);
+      c.now.radius += offset;
+      c.spin = (s - before) * input.colliders.spin[k];
+      c.friction = input.friction[k];
+      c.push_speed_step = k_push_out_speed * h;
+      colliders.push_back(c);
+    }
+    test::TwinPlane ground{*input.colliders.ground, input.friction.back(), k_push_out_speed * h};
+    ground.plane.offset += offset;
+    for_tiles([&](int block, int first, int last) {
+      for (const auto& c : colliders) twin.contact_capsule(block, first, last, c, 0.0, contacts);
+      twin.contact_plane(block, first, last, ground, contacts);
+    });
+    if (asked == ContactFeatures::triangles)
+      for_tiles([&](int block, int first, int last) {
+        for (const auto& c : colliders) twin.contact_cells(block, first, last, c, true, contacts);
+      });
+    twin.finish(step);
+  }
+  return true;
+}
+
+/// What can be run: something always holds.
+std::vector<test::WovenCase> held_cases(ContactFeatures features) {
+  std::vector<test::WovenCase> cases = test::woven_cases();
+  // Cells of 5 mm, pinned by chance inside the limbs: next to a pin no edge can be out and whole.
+  if (features == ContactFeatures::triangles)
+    std::erase_if(cases, [](const test::WovenCase& one) { return one.name == "grid, wide, without bend, pinned"; });
+  for (test::WovenCase& one : cases)
+    if (one.garment.pins.empty()) test::pin_first_row(one.garment);
+  return cases;
+}
+
+double worst(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double most = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    if (const double error = (a[i] - b[i]).norm(); !(error <= most)) most = error;
+  return most;
+}
+
+class WovenRuns : public ::testing::TestWithParam<ContactFeatures> {};
+INSTANTIATE_TEST_SUITE_P(Features, WovenRuns,
+                         ::testing::Values(ContactFeatures::particles, ContactFeatures::triangles));
+
+void compare_in_double(ContactFeatures features) {
+  constexpr int k_frames = 6, k_substeps = 8;
+  std::int64_t all_contacts = 0;
+  for (const test::WovenCase& one : held_cases(features)) {
+    SCOPED_TRACE(one.name);
+    for (const int passes : {1, 2}) {
+      const Garment& garment = one.garment;
+      SolverOptions options;
+      options.features = features;
+      options.double_precision = true;
+      options.passes = passes;
+      options.swept = false;
+      const auto solver = make_solver(garment, options);
+      const auto query = proxies::make_query(proxies::Backend::hybrid);
+      const int blocks = WovenSheet<double>(garment, false).view().blocks;
+      test::WovenTwin twin(garment, blocks);
+      test::SwingingLimbs limbs(garment, k_period);
+      solver->reset(garment.rest_positions);
+      double error = 0.0;
+      std::int64_t contacts = 0;
+      for (int frame = 0; frame < k_frames; ++frame) {
+        const FrameInput input = limbs.advance(k_substeps);
+        const auto divergence = solver->step(input, *query);
+        ASSERT_FALSE(divergence.has_value())
+            << "frame " << frame << ", substep " << divergence->substep << ", particle " << divergence->particle
+            << ", stretch " << divergence->stretch;
+        ASSERT_TRUE(frame_of(twin, garment, input, blocks, features, passes, &contacts)) << "frame " << frame;
+        error = std::max(error, worst(solver->particles().positions, twin.x));
+        ASSERT_LT(error, 1e-9) << "frame " << frame << ", " << passes << " passes";
+      }
+      all_contacts += contacts;
+      // A corner that was put on the surface is found there again or not, as rounding has it.
+      EXPECT_NEAR(static_cast<double>(solver->contact_counts().contacts), static_cast<double>(contacts),
+                  features == ContactFeatures::particles ? 0.0 : 10.0 + 0.01 * static_cast<double>(contacts));
+    }
+  }
+  EXPECT_GT(all_contacts, 10000);
+}
+
+TEST(WovenSheets, ParticlesInDoubleMeetWhatTheTwinsMeet_slow) { compare_in_double(ContactFeatures::particles); }
+TEST(WovenSheets, TrianglesInDoubleMeetWhatTheTwinsMeet_slow) { compare_in_double(ContactFeatures::triangles); }
+
+TEST_P(WovenRuns, InFloatStayNearTheTwinForAFrame) {
+  constexpr int k_frames = 6, k_substeps = 8;
+  double most = 0.0;
+  for (const test::WovenCase& one : held_cases(GetParam())) {
+    SCOPED_TRACE(one.name);
+    const Garment& garment = one.garment;
+    SolverOptions options;
+    options.features = GetParam();
+    options.swept = false;
+    const auto solver = make_solver(garment, options);
+    const auto query = proxies::make_query(proxies::Backend::hybrid);
+    const int blocks = WovenSheet<float>(garment, false).view().blocks;
+    test::WovenTwin twin(garment, blocks);
+    test::SwingingLimbs limbs(garment, k_period);
+    solver->reset(garment.rest_positions);
+    std::int64_t contacts = 0;
+    for (int frame = 0; frame < k_frames; ++frame) {
+      const FrameInput input = limbs.advance(k_substeps);
+      twin.x = solver->particles().positions;
+      twin.v = solver->particles().velocities;
+      ASSERT_FALSE(solver->step(input, *query).has_value()) << "frame " << frame;
+      ASSERT_TRUE(frame_of(twin, garment, input, blocks, GetParam(), 1, &contacts)) << "frame " << frame;
+      const double error = worst(solver->particles().positions, twin.x);
+      most = std::max(most, error);
+      EXPECT_LT(error, 1e-4) << "frame " << frame;
+    }
+  }
+  RecordProperty("worst", std::to_string(most * 1e6) + " um");
+}
+
+/// Positions and velocities after some frames, as bits.
+template <bool k_double> std::uint64_t hash_on(std::int64_t target, const Garment& garment, ContactFeatures features) {
+  const test::OnTarget on(target);
+  SolverOptions options;
+  options.features = features;
+  options.double_precision = k_double;
+  const auto solver = make_solver(garment, options);
+  const auto query = proxies::make_query(proxies::Backend::hybrid);
+  test::SwingingLimbs limbs(garment, k_period);
+  for (int frame = 0; frame < 10; ++frame) {
+    const FrameInput input = limbs.advance(6);
+    EXPECT_FALSE(solver->step(input, *query).has_value());
+  }
+  return state_hash(solver->particles());
+}
+
+/// Targets that multiply and add in one rounding: all of x86 from AVX2 on.
+bool fuses(std::int64_t target) {
+  return (target & (HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)) != 0 || (HWY_ARCH_X86 == 0 && target != HWY_EMU128);
+}
+
+TEST_P(WovenRuns, GiveTheSameBitsOnAllTargetsThatFuseAndOnAllThatDoNot) {
+  for (const test::WovenCase& one : held_cases(GetParam())) {
+    SCOPED_TRACE(one.name);
+    std::optional<std::uint64_t> single[2], two[2];
+    for (const std::int64_t target : test::simd_targets()) {
+      SCOPED_TRACE(hwy::TargetName(target));
+      const bool fused = fuses(target);
+      const std::uint64_t s = hash_on<false>(target, one.garment, GetParam());
+      const std::uint64_t d = hash_on<true>(target, one.garment, GetParam());
+      EXPECT_EQ(single[fused].value_or(s), s);
+      EXPECT_EQ(two[fused].value_or(d), d);
+      single[fused] = s;
+      two[fused] = d;
+    }
+  }
+}
+
+/// Places of a lane without a column must not decide anything.
+TEST(WovenSheets, FreeLanesOfARingNeverTearIt) {
+  for (const int columns : {45, 75, 90, 40, 52, 203}) // 15, 15, 15, 10, 13, 7 lanes
+    for (const bool precise : {false, true})
+      for (const double speed : {0.0, 3.0, 30.0}) {
+        SCOPED_TRACE(std::to_string(columns) + " columns at " + std::to_string(speed) + " m/s");
+        const Garment garment = test::detail::tube(50, columns, {}, 0.8, std::nullopt);
+        SolverOptions options;
+        options.double_precision = precise;
+        const auto solver = make_solver(garment, options);
+        const auto query = proxies::make_query(proxies::Backend::hybrid);
+        Particles flying{garment.rest_positions, {}};
+        flying.velocities.assign(flying.positions.size(), speed * Vec3(1, 0.3, -0.5));
+        solver->restore(flying);
+        FrameInput input;
+        for (int frame = 0; frame < 20; ++frame) ASSERT_FALSE(solver->step(input, *query).has_value()) << frame;
+      }
+}
+
+/// As many substeps as a recovery takes, and several passes: the square of the substep must not take what does not
+/// exist out of the range of float.
+TEST(WovenSheets, TinySubstepsAreNumbers) {
+  for (const int passes : {1, 3}) {
+    Garment garment = test::detail::grid(12, 20, {});
+    test::pin_first_row(garment);
+    SolverOptions options;
+    options.passes = passes;
+    const auto solver = make_solver(garment, options);
+    const auto query = proxies::make_query(proxies::Backend::hybrid);
+    test::SwingingLimbs limbs(garment, k_period);
+    const FrameInput input = limbs.advance(k_most_recovery_substeps);
+    EXPECT_FALSE(solver->step(input, *query).has_value()) << passes;
+    for (const Vec3& p : solver->particles().positions) ASSERT_TRUE(p.allFinite());
+  }
+}
+
+} // namespace

@@ -1,0 +1,110 @@
+// What a session does when a frame does not go as asked.
+#include "rig/error.h"
+#include "rig/io/file_io.h"
+#include "src/run/session.h"
+#include "src/scene/load.h"
+#include "tests/support/paths.h"
+
+#include <gmock/gmock.h>
+
+using namespace tutu;
+using namespace tutu::app;
+using namespace tutu::test;
+
+namespace {
+
+const LoadedScene& dance() {
+  static const LoadedScene scene = load_scene(read_scene(source_file("assets/scenes/dance.json")));
+  return scene;
+}
+
+GarmentPositions rest_of(const LoadedScene& scene) {
+  GarmentPositions positions;
+  for (const cloth::Garment& garment : scene.garments) positions.push_back(garment.rest_positions);
+  return positions;
+}
+
+double fastest_of(const Session& session) {
+  double fastest = 0.0;
+  for (std::size_t g = 0; g < session.scene().garments.size(); ++g)
+    for (const Vec3& v : session.garment(static_cast<int>(g)).particles().velocities)
+      fastest = std::max(fastest, v.norm());
+  return fastest;
+}
+
+/// The dance's first pose, moved.
+std::vector<Transform> pose_moved(const LoadedScene& scene, const Vec3& by) {
+  const auto first = scene.clip.key(0);
+  std::vector<Transform> local(first.begin(), first.end());
+  local[0].translation += by;
+  return local;
+}
+
+TEST(SessionTroubles, ACutInTheClipIsAJumpAndNotAVelocity) {
+  const LoadedScene& scene = dance();
+  Session session(scene);
+  session.start(rest_of(scene));
+  for (int frame = 0; frame < 3; ++frame) session.advance_to(pose_moved(scene, Vec3::Zero()), 0.0);
+  EXPECT_EQ(session.troubles().teleports, 0);
+  const std::vector<Vec3> before = session.garment(0).particles().positions;
+  session.advance_to(pose_moved(scene, Vec3(5, 0, 0)), 0.0);
+  EXPECT_EQ(session.troubles().teleports, 1);
+  ASSERT_FALSE(session.failure().has_value());
+  EXPECT_LT(fastest_of(session), 3.0);
+  for (std::size_t i = 0; i < before.size(); ++i)
+    EXPECT_LT((session.garment(0).particles().positions[i] - before[i] - Vec3(5, 0, 0)).norm(), 0.05) << i;
+  session.advance_to(pose_moved(scene, Vec3(5, 0, 0)), 0.0);
+  EXPECT_EQ(session.troubles().teleports, 1) << "the frame after the jump is a frame like any other";
+  EXPECT_EQ(session.troubles().recoveries, 0);
+}
+
+TEST(SessionTroubles, AFastLimbSplitsTheFrameAndSaysWhich) {
+  LoadedScene scene = dance();
+  scene.settings.substeps = 2;
+  std::uint64_t hashes[2] = {};
+  for (const bool adaptive : {true, false}) {
+    scene.settings.adaptive_substeps = adaptive;
+    Session session(scene);
+    session.start(rest_of(scene));
+    session.advance_to(pose_moved(scene, Vec3::Zero()), 0.0);
+    session.advance_to(pose_moved(scene, Vec3(0.3, 0, 0)), 0.0); // 18 m/s
+    ASSERT_FALSE(session.failure().has_value());
+    const SessionTroubles& troubles = session.troubles();
+    if (adaptive) {
+      EXPECT_GE(troubles.frames_split, 1);
+      EXPECT_GT(troubles.worst_split.substeps, 2);
+      EXPECT_THAT(troubles.worst_split_reason, ::testing::HasSubstr(" moves 0.3"));
+    } else {
+      EXPECT_EQ(troubles.frames_split, 0);
+    }
+    hashes[adaptive] = session.state_hash();
+  }
+  EXPECT_NE(hashes[0], hashes[1]);
+}
+
+TEST(SessionTroubles, StartForgetsThem) {
+  LoadedScene scene = dance();
+  scene.settings.substeps = 1;
+  Session session(scene);
+  session.start(rest_of(scene));
+  session.advance_to(pose_moved(scene, Vec3(5, 0, 0)), 0.0);
+  EXPECT_EQ(session.troubles().teleports, 1);
+  session.start(rest_of(scene));
+  EXPECT_EQ(session.troubles().teleports, 0);
+  EXPECT_TRUE(session.troubles().first_recoveries.empty());
+}
+
+TEST(SceneFile, AdaptiveSubstepsAreOnUnlessTurnedOff) {
+  const auto folder = scratch_folder();
+  for (const char* name : {"a.dae", "m.json"}) write_file(folder / name, "");
+  const auto read = [&](const std::string& solver) {
+    write_file(folder / "s.json", R"({"character": "a.dae", "motion": "m.json", "solver": )" + solver + "}");
+    return read_scene(folder / "s.json");
+  };
+  EXPECT_TRUE(read("{}").settings.adaptive_substeps);
+  EXPECT_FALSE(read(R"({"adaptive_substeps": false})").settings.adaptive_substeps);
+  EXPECT_THROW(read(R"({"adaptive_substeps": 3})"), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+} // namespace

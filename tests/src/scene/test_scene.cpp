@@ -1,0 +1,120 @@
+// The pieces between a scene file and a moving scene.
+#include "proxies/proxy_file.h"
+#include "rig/error.h"
+#include "rig/io/file_io.h"
+#include "src/run/drape.h"
+#include "src/scene/load.h"
+#include "src/scene/saved_drape.h"
+#include "tests/support/paths.h"
+
+#include <gmock/gmock.h>
+
+using namespace tutu;
+using namespace tutu::app;
+using namespace tutu::test;
+
+namespace {
+
+const LoadedScene& dance() {
+  static const LoadedScene scene = load_scene(read_scene(source_file("assets/scenes/dance.json")));
+  return scene;
+}
+
+TEST(Scene, TheDanceIsWhatTheReportHad) {
+  const LoadedScene& scene = dance();
+  EXPECT_EQ(scene.character.skeleton.joint_count(), 52);
+  EXPECT_EQ(scene.character.mesh.parts.size(), 2u) << "two skins put in common";
+  EXPECT_GE(scene.clip.times.size(), 10u);
+  EXPECT_GE(scene.clip.duration(), 8.0);
+  ASSERT_EQ(scene.garments.size(), 2u);
+  EXPECT_EQ(scene.garments[0].particle_count(), 30 * 30);
+  EXPECT_EQ(scene.garments[0].seams.size(), 10u) << "sewn from the waist down to a third";
+  EXPECT_EQ(scene.garments[1].particle_count(), 15 * 15);
+  EXPECT_EQ(scene.proxies.size(), 36u) << "fitted";
+  const auto by_hand = proxies::read_proxies(source_file("assets/proxies/dancer-hand.json"), scene.character.skeleton);
+  int spheres = 0;
+  for (const proxies::Proxy& proxy : by_hand) spheres += proxy.kind == proxies::ProxyKind::sphere;
+  EXPECT_EQ(spheres, 9);
+  EXPECT_EQ(by_hand.size(), 27u);
+}
+
+TEST(Scene, TheClipClosesItsLoop) {
+  const rig::Clip& clip = dance().clip;
+  const auto first = clip.key(0), last = clip.key(static_cast<int>(clip.times.size()) - 1);
+  for (int j = 0; j < clip.joint_count; ++j) {
+    EXPECT_LT((first[j].translation - last[j].translation).norm(), 1e-9) << j;
+    EXPECT_LT(first[j].rotation.angularDistance(last[j].rotation), 1e-6) << j;
+  }
+}
+
+TEST(Drape, ShippedDrapeFitsTheDance) {
+  bool stale = true;
+  EXPECT_TRUE(saved_drape(dance(), &stale).has_value()) << "run: tutu drape assets/scenes/dance.json";
+  EXPECT_FALSE(stale);
+}
+
+TEST(Drape, FingerprintSeesWhatMatters) {
+  LoadedScene scene = dance();
+  const std::uint64_t before = drape_fingerprint(scene);
+  EXPECT_EQ(drape_fingerprint(dance()), before);
+  scene.garments[0].fabric.density *= 1.001;
+  EXPECT_NE(drape_fingerprint(scene), before);
+  scene = dance();
+  scene.proxies[3].radius += 1e-4;
+  EXPECT_NE(drape_fingerprint(scene), before);
+  scene = dance();
+  scene.ground_height = 0.01;
+  EXPECT_NE(drape_fingerprint(scene), before);
+}
+
+TEST(SceneFile, ReadsEveryFormOfMotion) {
+  const auto folder = scratch_folder();
+  for (const char* name : {"a.dae", "b.dae", "m.json", "t", "r", "k"}) write_file(folder / name, "");
+  const auto read = [&](const std::string& motion) {
+    write_file(folder / "s.json",
+               R"({"character": {"file": "a.dae", "max_influences": 8}, "ground": false, "motion": )" + motion + "}");
+    return read_scene(folder / "s.json");
+  };
+  EXPECT_EQ(std::get<ClipMotion>(read("\"m.json\"").motion).clip, folder / "m.json");
+  EXPECT_EQ(*std::get<ClipMotion>(read(R"({"clip": "m.json", "retarget_from": "b.dae"})").motion).retarget_from,
+            folder / "b.dae");
+  EXPECT_EQ(std::get<int>(std::get<OwnMotion>(read(R"({"animation": 2})").motion).animation), 2);
+  EXPECT_EQ(std::get<std::string>(std::get<OwnMotion>(read(R"({"animation": "jump"})").motion).animation), "jump");
+  const SceneDescription texts = read(R"({"texts": {"translations": "t", "rotations": "r", "times": "k"}})");
+  EXPECT_EQ(std::get<rig::ThreeTexts>(texts.motion).times, folder / "k");
+  EXPECT_EQ(texts.max_influences, 8);
+  EXPECT_FALSE(texts.ground_height.has_value());
+  EXPECT_THROW(read(R"({"animation": 2, "clip": "m.json"})"), InputError);
+  EXPECT_THROW(read(R"({"animation": 2, "retarget_from": "m.dae"})"), InputError);
+  const MocapMotion mocap = std::get<MocapMotion>(
+      read(R"({"bvh": "t", "rest_frame": 4, "from": 0.5, "to": 2, "joints": {"A": "Hips", "B": false}})").motion);
+  EXPECT_EQ(mocap.bvh, folder / "t");
+  EXPECT_EQ(mocap.options.rest_frame, 4);
+  EXPECT_EQ(mocap.options.to, 2.0);
+  EXPECT_EQ(mocap.joints.at("A"), "Hips");
+  EXPECT_EQ(mocap.joints.at("B"), std::nullopt);
+  EXPECT_THROW(read(R"({"bvh": "t", "joints": {"A": true}})"), InputError);
+  EXPECT_THROW(read(R"({"bvh": "t", "from": 2, "to": 1})"), InputError);
+  EXPECT_THROW(read("3"), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+TEST(SceneFile, InterpolationAndSkinningAreChosenInTheScene) {
+  const auto folder = scratch_folder();
+  const std::string dancer = source_file("assets/characters/dancer.dae").string(),
+                    clip = source_file("assets/poses/dance.json").string();
+  const auto load = [&](const std::string& more) {
+    write_file(folder / "s.json", R"({"character": ")" + dancer + R"(", "motion": ")" + clip + "\"" + more + "}");
+    return load_scene(read_scene(folder / "s.json"));
+  };
+  const LoadedScene plain = load(""), other = load(R"(, "interpolation": "cubic", "skinning": "dual_quaternion")");
+  EXPECT_EQ(plain.clip.interpolation, rig::Interpolation::nlerp);
+  EXPECT_EQ(plain.character.skin.method, rig::Skinning::linear);
+  EXPECT_EQ(other.clip.interpolation, rig::Interpolation::cubic);
+  EXPECT_EQ(other.character.skin.method, rig::Skinning::dual_quaternion);
+  EXPECT_THROW(load(R"(, "interpolation": "linear")"), InputError);
+  EXPECT_THROW(load(R"(, "skinning": "lbs")"), InputError);
+  std::filesystem::remove_all(folder);
+}
+
+} // namespace
