@@ -9,5 +9,7 @@ int main(int argc, char** argv) {
   app.failure_message(CLI::FailureMessage::simple);
   int status = k_ok;
   add_cell(app, status);
+  // Words from a file, for who starts it where a shell would read them (the jobs of tutu chart --slurm).
+  if (argc == 3 && std::string_view(argv[1]) == "--arguments") return run_program_on_file(app, argv[2], status);
   return run_program(app, argc, argv, status);
 }

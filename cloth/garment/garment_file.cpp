@@ -2,6 +2,7 @@
 
 #include "rig/import/surface.h"
 #include "rig/io/json_file.h"
+#include "rig/text.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -73,13 +74,18 @@ DiscShape read_disc(const JsonValue& json) {
 
 namespace fs = std::filesystem;
 
+/// The file that a mesh names.
+fs::path mesh_file(const JsonValue& name) {
+  const fs::path file = (fs::path(name.file()).parent_path() / name.string()).lexically_normal();
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
+    throw name.error("no file " + file.string(), "the path of a mesh, from the garment's folder");
+  return file;
+}
+
 MeshShape read_mesh(const JsonValue& json) {
   json.only_keys({"file", "scale", "pressed"});
-  const JsonValue name = json.at("file");
-  const fs::path file = (fs::path(json.file()).parent_path() / name.string()).lexically_normal();
-  if (!fs::is_regular_file(file))
-    throw name.error("no file " + file.string(), "the path of a mesh, from the garment's folder");
-  rig::TriangleSurface surface = rig::import_surface(file);
+  rig::TriangleSurface surface = rig::import_surface(mesh_file(json.at("file")));
   MeshShape mesh{std::move(surface.positions), std::move(surface.triangles)};
   const auto scale = json.find("scale");
   const double metres = scale ? scale->positive() : 1.0;
@@ -192,7 +198,7 @@ GarmentDescription read_garment(const std::filesystem::path& file) {
   json.only_keys({"name", "shape", "fabric", "attachments", "colour"});
   GarmentDescription description;
   description.file = file.string();
-  description.name = json.has("name") ? json.at("name").string() : file.stem().string();
+  description.name = json.has("name") ? json.at("name").string() : plain_text(file.stem().string());
   description.shape = read_shape(json.at("shape"));
   if (const auto fabric = json.find("fabric")) description.fabric = fabric_of(*fabric);
   if (const auto attachments = json.find("attachments"))
@@ -205,6 +211,16 @@ GarmentDescription read_garment(const std::filesystem::path& file) {
     }
   }
   return description;
+}
+
+std::vector<fs::path> files_named_by_garment(const fs::path& file) {
+  const JsonValue json = JsonValue::read(file);
+  std::vector<fs::path> files;
+  if (const auto mesh = json.at("shape").find("mesh")) files.push_back(mesh_file(mesh->at("file")));
+  auto fabric = json.find("fabric");
+  if (fabric && fabric->is_object()) fabric = fabric->find("base");
+  if (fabric) files.push_back(fabric_file(*fabric));
+  return files;
 }
 
 } // namespace tutu::cloth

@@ -2,10 +2,16 @@
 
 #include "rig/error.h"
 
+#include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <fstream>
+#include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
 
@@ -34,6 +40,65 @@ void flush_to_disk(const fs::path& file) {
   if (result != 0) fail(file, "cannot be flushed");
 }
 
+/// What temporaries of this machine are called, up to the process: folders may be shared between machines.
+const std::string& machine_prefix() {
+  static const std::string prefix = [] {
+    char name[256] = {};
+    ::gethostname(name, sizeof name - 1);
+    std::uint64_t hash = 14695981039346656037ull; // FNV-1a [Fowler, Noll, Vo 1991]
+    for (const char* c = name; *c != 0; ++c) hash = (hash ^ static_cast<unsigned char>(*c)) * 1099511628211ull;
+    char text[24];
+    std::snprintf(text, sizeof text, "%08x", static_cast<unsigned>(hash ^ hash >> 32));
+    return ".tutu-" + std::string(text) + "-";
+  }();
+  return prefix;
+}
+
+std::string own_prefix() { return machine_prefix() + std::to_string(::getpid()) + "-"; }
+
+mode_t file_mask() {
+  static const mode_t mask = [] { // can only be asked by setting it: once
+    const mode_t old = ::umask(0);
+    ::umask(old);
+    return old;
+  }();
+  return mask;
+}
+
+/// The names of this process's temporaries, where a signal's handler can read them. A handler can reach nothing but a
+/// global; what finds no room is swept at a later start.
+class PendingNames {
+public:
+  void add(const char* name) {
+    const std::size_t length = std::strlen(name);
+    for (Slot& slot : slots_) {
+      int free = k_free;
+      if (length >= sizeof slot.name || !slot.state.compare_exchange_strong(free, k_taken)) continue;
+      std::memcpy(slot.name, name, length + 1);
+      slot.state = k_full;
+      return;
+    }
+  }
+  void remove(const char* name) {
+    for (Slot& slot : slots_)
+      if (slot.state == k_full && std::strcmp(slot.name, name) == 0) slot.state = k_free;
+  }
+  void remove_all() noexcept {
+    for (Slot& slot : slots_)
+      if (slot.state == k_full) ::unlink(slot.name);
+  }
+
+private:
+  static constexpr int k_free = 0, k_taken = 1, k_full = 2;
+  struct Slot {
+    std::atomic<int> state = k_free;
+    char name[4096] = {};
+  };
+  Slot slots_[16];
+};
+static_assert(std::atomic<int>::is_always_lock_free);
+PendingNames g_pending;
+
 } // namespace
 
 std::string read_file(const fs::path& file) {
@@ -58,28 +123,60 @@ std::string read_file(const fs::path& file) {
 
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
   std::error_code error;
-  if (fs::is_symlink(target_, error)) target_ = fs::weakly_canonical(target_); // the link stays, its file is replaced
+  if (fs::is_symlink(target_, error)) { // the link stays, its file is replaced
+    target_ = fs::weakly_canonical(target_, error);
+    if (error)
+      throw InputError(target_.string(), "", "a link that leads nowhere: " + error.message(), "a file to write");
+  }
   if (!is_replaceable(target_))
     throw InputError(target_.string(), "", "something that is not a file", "a file to write");
-  if (!target_.parent_path().empty() && !fs::is_directory(target_.parent_path(), error))
-    throw InputError(target_.string(), "", "no folder " + target_.parent_path().string(), "an existing folder");
+  const fs::path folder = target_.parent_path().empty() ? fs::path(".") : target_.parent_path();
+  if (!fs::is_directory(folder, error))
+    throw InputError(target_.string(), "", "no folder " + folder.string(), "an existing folder");
+  const long longest = ::pathconf(folder.c_str(), _PC_NAME_MAX);
+  if (const std::size_t length = target_.filename().string().size(); longest > 0 && length > std::size_t(longest))
+    throw InputError(target_.string(), "", "a name of " + std::to_string(length) + " bytes",
+                     "at most " + std::to_string(longest));
   // Hidden, in the same folder (a rename must not cross file systems), with the extension kept for tools that look at
   // it.
-  temporary_ = target_.parent_path() / ("." + target_.stem().string() + "." + std::to_string(::getpid()) + ".part" +
-                                        target_.extension().string());
+  const std::string extension = target_.extension().string().size() < 32 ? target_.extension().string() : "";
+  std::string name = (folder / (own_prefix() + "XXXXXX" + extension)).string();
+  const int descriptor = ::mkostemps(name.data(), static_cast<int>(extension.size()), O_CLOEXEC);
+  if (descriptor < 0) fail(target_, "cannot be written");
+  temporary_ = name;
+  g_pending.add(temporary_.c_str());
+  struct stat old {};
+  const mode_t mode = ::stat(target_.c_str(), &old) == 0 ? old.st_mode & 0777u : 0666u & ~file_mask();
+  ::fchmod(descriptor, mode); // else it would stay nobody's but the owner's
+  ::close(descriptor);
 }
 
 PendingFile::~PendingFile() {
   if (committed_) return;
   std::error_code ignored;
   fs::remove(temporary_, ignored);
+  g_pending.remove(temporary_.c_str());
 }
 
 void PendingFile::commit() {
   flush_to_disk(temporary_);
   if (std::rename(temporary_.c_str(), target_.c_str()) != 0) fail(target_, "cannot be written");
+  g_pending.remove(temporary_.c_str());
   committed_ = true;
 }
+
+void sweep_leftovers(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!name.starts_with(machine_prefix())) continue;
+    const int owner = std::atoi(name.c_str() + machine_prefix().size());
+    std::error_code ignored;
+    if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) fs::remove(entry->path(), ignored);
+  }
+}
+
+void abandon_pending_files() noexcept { g_pending.remove_all(); }
 
 void write_file(const fs::path& file, std::string_view bytes) {
   if (!is_replaceable(file) && !fs::is_directory(file)) { // a pipe or a device: there is nothing to leave half-written

@@ -1,6 +1,7 @@
 #include "rig/io/json_file.h"
 
 #include "rig/io/file_io.h"
+#include "rig/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -121,7 +122,10 @@ std::vector<JsonValue> JsonValue::items() const {
 std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
   if (!node_->is_object()) throw error("an object");
   std::vector<std::pair<std::string, JsonValue>> all;
-  for (const auto& [key, value] : node_->items()) all.emplace_back(key, child(key, value));
+  for (const auto& [key, value] : node_->items()) {
+    if (!is_plain_text(key)) throw error("the key " + shortened(json(key)), "keys without control characters");
+    all.emplace_back(key, child(key, value));
+  }
   return all;
 }
 
@@ -136,7 +140,9 @@ void JsonValue::only_keys(std::initializer_list<std::string_view> known) const {
 
 std::string JsonValue::string() const {
   if (!node_->is_string()) throw error("a string");
-  return node_->get<std::string>();
+  const std::string& text = node_->get_ref<const std::string&>();
+  if (!is_plain_text(text)) throw error("text without control characters");
+  return text;
 }
 
 std::string JsonValue::string_among(std::span<const std::string_view> choices) const {

@@ -30,16 +30,17 @@ public:
   const std::string& pointer() const { return pointer_; } ///< "" for the whole file
 
   bool has(const char* key) const;
-  JsonValue at(const char* key) const;                            ///< required member of an object
-  std::optional<JsonValue> find(const char* key) const;           ///< optional member of an object
-  std::vector<JsonValue> items() const;                           ///< elements of an array
-  std::vector<std::pair<std::string, JsonValue>> members() const; ///< members of an object, in key order
+  JsonValue at(const char* key) const;                  ///< required member of an object
+  std::optional<JsonValue> find(const char* key) const; ///< optional member of an object
+  std::vector<JsonValue> items() const;                 ///< elements of an array
+  std::vector<std::pair<std::string, JsonValue>>
+  members() const; ///< members of an object, in key order; keys as string()
 
   /// An object whose every key is one of these ("$schema" and "comment" are always welcome).
   /// Throws, naming the unknown key, its place, and the keys that exist.
   void only_keys(std::initializer_list<std::string_view> known) const;
 
-  std::string string() const;
+  std::string string() const; ///< without control characters: names and paths end up in lines, tables and scripts
   std::string string_among(std::span<const std::string_view> choices) const;
   bool boolean() const;
   double number() const; ///< finite, within +-1e9

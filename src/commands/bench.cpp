@@ -1,6 +1,8 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
+#include "src/base/json_text.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/measure/frame_metrics.h"
@@ -143,7 +145,7 @@ int run_dancer_skirt(const Options& options) {
   DancerSkirt scene(setup);
   const Run done = run_scene(scene, options.frames);
   const RunMetrics metrics = summarise(done.metrics, done.ms);
-  if (!options.json.empty()) write_file(options.json, json_of(options, scene, metrics, done).dump(2) + "\n");
+  if (!options.json.empty()) write_file(options.json, json_text(json_of(options, scene, metrics, done)));
   fmt::print("{}", text_of(options, scene, metrics));
   if (done.failure) fmt::print(stderr, "tutu: {}\n", done.failure->message());
   if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", scene.frame(), options.frames);
@@ -157,7 +159,7 @@ int run_stability_family(const Options& options) {
   setup.adaptive = !options.fixed_substeps;
   if (options.substeps) setup.substeps = *options.substeps;
   const StabilityReport report = report_stability(options.name, setup, options.runs, [] { return !interrupted(); });
-  if (!options.json.empty()) write_file(options.json, report.json.dump(2) + "\n");
+  if (!options.json.empty()) write_file(options.json, json_text(report.json));
   fmt::print("{}", report.text);
   if (interrupted()) fmt::print(stderr, "tutu: interrupted\n");
   return report.passed ? k_ok : k_not_met;
@@ -219,6 +221,7 @@ void add_bench(CLI::App& app, int& status) {
           ->group("scenes of stability")};
   command->callback([options, of_skirt, of_others, &status] {
     refuse_foreign(options->name, of_skirt, of_others);
+    check_outputs({{"--json", options->json}}, {});
     catch_interrupt();
     status = options->name == k_dancer_skirt ? run_dancer_skirt(*options) : run_stability_family(*options);
   });

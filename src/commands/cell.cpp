@@ -1,6 +1,7 @@
 // tutu cell: one setting of a scene, one run, one row. What `tutu chart` starts many of.
 #include "rig/error.h"
 #include "src/base/interrupt.h"
+#include "src/base/outputs.h"
 #include "src/commands/commands.h"
 #include "src/options/chart_options.h"
 #include "src/options/scene_options.h"
@@ -48,6 +49,8 @@ void print_row(const Row& row) {
 int run(const Options& options) {
   catch_interrupt();
   const LoadedScene base = options.chart.load();
+  if (!options.out.empty() && !std::filesystem::exists(options.out)) // else rows are added to it
+    check_outputs({{"--out", options.out}}, {});
   const ReferencePlan plan = options.chart.plan(base);
   const Setting setting = setting_for(options, base.settings);
   const LoadedScene scene = with_setting(base, setting);

@@ -2,6 +2,7 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/options/chart_options.h"
@@ -88,7 +89,7 @@ std::vector<std::string> call_of(const Options& options, const CellTask& task, c
   std::vector<std::string> words = options.chart.words();
   words.insert(words.begin(), "cell");
   for (const std::string& word : setting_options(setting_values(task.setting), of_scene)) words.push_back(word);
-  if (!task.setting.name.empty()) words.insert(words.end(), {"--name", task.setting.name});
+  if (!task.setting.name.empty()) words.push_back("--name=" + task.setting.name); // it may begin with -
   words.insert(words.end(), {"--seed", std::to_string(task.seed), "--out", row_file(options, task).string()});
   return words;
 }
@@ -164,9 +165,10 @@ int run(const Options& options) {
     if (!fs::exists(other)) throw InputError(other, "", "no such file", "rows of tutu cell or tutu chart (.csv)");
     (void)read_results(other);
   }
-  fs::create_directories(folder);
   catch_interrupt();
   const LoadedScene scene = options.chart.load();
+  check_outputs({{"--out", folder, true}}, inputs_of(scene.files));
+  const FolderLock lock(folder, "tutu chart");
   std::vector<Setting> settings = options.settings.empty() ? builtin_settings(scene.description(), options.chart.quick)
                                                            : read_settings(options.settings, scene.settings);
   const ReferencePlan plan = options.chart.plan(scene);

@@ -2,6 +2,7 @@
 #include "cloth/garment/drape_file.h"
 #include "cloth/state/tolerances.h"
 #include "src/base/interrupt.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/options/scene_options.h"
@@ -22,6 +23,8 @@ struct Options {
 int run(const Options& options) {
   catch_interrupt();
   const LoadedScene scene = options.scene.load();
+  const std::filesystem::path file = options.out.empty() ? scene.files.drape : std::filesystem::path(options.out);
+  check_outputs({{options.out.empty() ? "the scene's drape" : "--out", file}}, inputs_of(scene.files));
   const int frames = static_cast<int>(options.seconds * scene.settings.frames_per_second);
   Progress bar("draping " + scene.name(), frames);
   const DrapeResult result = drape(scene, options.seconds, [&](int done, int) {
@@ -41,7 +44,6 @@ int run(const Options& options) {
   saved.fingerprint = drape_fingerprint(scene);
   for (std::size_t g = 0; g < scene.garments.size(); ++g)
     saved.garments.push_back({scene.garments[g].name, result.positions[g]});
-  const std::filesystem::path file = options.out.empty() ? scene.files.drape : std::filesystem::path(options.out);
   cloth::write_drape(saved, file);
   const bool settled = result.fastest < cloth::k_settled_speed;
   fmt::print("{}: {} after {:.1f} s, the fastest particle at {:.1f} mm/s\n", file.string(),

@@ -10,6 +10,8 @@
 #include "rig/io/json_file.h"
 #include "rig/strong_poses.h"
 #include "src/base/interrupt.h"
+#include "src/base/json_text.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/options/scene_options.h"
@@ -181,6 +183,10 @@ proxies::FitNote::Side side_of(const proxies::FitSpread& s) { return {1e3 * s.p9
 int run(const Options& options) {
   catch_interrupt();
   if (!options.curve.empty()) require_chart(options.curve);
+  std::vector<std::filesystem::path> inputs = {options.character};
+  if (options.motion) inputs.emplace_back(*options.motion);
+  if (options.garment) inputs.emplace_back(*options.garment);
+  check_outputs({{"--out", options.out}, {"--curve", options.curve}, {"--json", options.json}}, inputs);
   const rig::Import import = rig::import_character(options.character, {options.influences});
   const rig::Character& character = import.character;
   std::string motion;
@@ -262,7 +268,7 @@ int run(const Options& options) {
     json["bound_mm"] = 1e3 * std::max(error.under.bound, error.over.bound);
     if (options.garment) json["reach"] = reach;
     json["seconds"] = seconds;
-    write_file(options.json, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write_file(options.json, json_text(json));
   }
   if (!result.met) fmt::print(stderr, "tutu: the tolerance is not met with {} proxies\n", result.proxies.size());
   return result.met && !result.interrupted ? k_ok : k_not_met;

@@ -2,6 +2,8 @@
 #include "rig/character.h"
 #include "rig/import/import.h"
 #include "rig/io/file_io.h"
+#include "src/base/json_text.h"
+#include "src/base/outputs.h"
 #include "src/commands/commands.h"
 
 #include <algorithm>
@@ -143,9 +145,10 @@ void add_inspect(CLI::App& app, int& status) {
       ->check(CLI::IsMember({4, 8}))
       ->capture_default_str();
   command->callback([options, &status] {
+    check_outputs({{"--json", options->json}}, {options->file});
     const rig::Import import = rig::import_character(options->file, {.max_influences = options->influences});
     if (!options->json.empty()) // names come from the file and need not be UTF-8
-      write_file(options->json, json_of(import).dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+      write_file(options->json, json_text(json_of(import)));
     print_import(import);
     status = k_ok;
   });

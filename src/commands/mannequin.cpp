@@ -1,6 +1,7 @@
 #include "rig/mannequin/mannequin.h"
 #include "rig/error.h"
 #include "rig/io/file_io.h"
+#include "src/base/outputs.h"
 #include "src/commands/commands.h"
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@ void add_mannequin(CLI::App& app, int& status) {
   command->callback([out, &status] {
     if (std::filesystem::path(*out).extension() != ".dae")
       throw InputError("", "--out", *out, "a name that ends in .dae");
+    check_outputs({{"--out", *out}}, {});
     const rig::Mannequin mannequin = rig::make_mannequin();
     write_file(*out, rig::collada_of(mannequin));
     fmt::print("{}: {} joints, {} + {} vertices\n", *out, mannequin.skeleton.joint_count(),

@@ -4,6 +4,8 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
+#include "src/base/json_text.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/options/chart_options.h"
@@ -131,11 +133,11 @@ void write_plan(const LoadedScene& scene, PlanBench& bench, PlanRecord& record, 
 void check_out(const Options& options, const LoadedScene& scene) {
   const fs::path file = options.out;
   if (file.extension() != ".json") throw InputError("", "--out", file.string(), "a file name that ends in .json");
-  const fs::path folder = fs::absolute(file).parent_path();
-  if (!fs::is_directory(folder)) throw InputError("", "--out", "no folder " + folder.string(), "a file in a folder");
-  std::error_code none;
-  if (fs::equivalent(file, scene.files.file, none))
-    throw InputError("", "--out", file.string(), "another file than the scene itself");
+  const std::vector<Output> outputs = {{"--out", file},
+                                       {"the plan's drape", fs::path(file).replace_extension(".drape.json")},
+                                       {"the plan's proxies", fs::path(file).replace_extension(".proxies.json")},
+                                       {"--json", options.json}};
+  check_outputs(outputs, inputs_of(scene.files));
 }
 
 int run(Options options) {
@@ -172,7 +174,7 @@ int run(Options options) {
     nlohmann::ordered_json json = plan_json(scene.name(), record, goal, bench.limits(), options.ms);
     json["own"] = errors_json(bench.own());
     json["out"] = options.out;
-    write_file(options.json, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    write_file(options.json, json_text(json));
   }
   return record.result.good && record.result.in_budget ? k_ok : k_not_met;
 }

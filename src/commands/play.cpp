@@ -1,6 +1,7 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
@@ -40,7 +41,6 @@ void check(const PlayOptions& options) {
   for (const int frame : options.at)
     if (options.frames && frame > *options.frames)
       throw InputError("", "--at", std::to_string(frame), "at most --frames, " + std::to_string(*options.frames));
-  if (!options.json.empty()) (void)PendingFile(options.json); // a place that cannot be written is told now
 }
 
 std::vector<std::string> layer_names() {
@@ -67,6 +67,10 @@ int run(const PlayOptions& options) {
   check(options);
   if (headless) catch_interrupt();
   Draped first{load(options), {}};
+  std::vector<fs::path> inputs = inputs_of(first.scene.files);
+  if (!options.against.empty()) inputs.emplace_back(options.against);
+  const PictureTarget target = headless ? picture_target(options, first.scene) : PictureTarget{};
+  check_outputs({{"--json", options.json}, {"--out", target.path, !target.film}}, inputs);
   auto start = draped_start(first.scene);
   if (!start) return k_not_met;
   first.start = std::move(*start);

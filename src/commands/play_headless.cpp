@@ -2,6 +2,7 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
+#include "src/base/json_text.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
@@ -79,12 +80,10 @@ public:
       other_view_->set_error_scale(ErrorScale::of(1e-3 * options.tolerance_mm));
     }
 
-    out_ = options.out;
-    const bool film = at_.empty() && (out_.empty() ? ffmpeg_available() : out_.extension() == ".mp4");
-    if (out_.empty()) out_ = film ? stem_ + ".mp4" : at_.empty() ? stem_ + "-frames" : ".";
-    if (film) video_.emplace(out_, width, height, scene.settings.frames_per_second);
-    else fs::create_directories(out_);
-    if (!film && at_.empty() && options.out.empty())
+    const PictureTarget target = picture_target(options, scene);
+    out_ = target.path;
+    if (target.film) video_.emplace(out_, width, height, scene.settings.frames_per_second);
+    if (!target.film && at_.empty() && options.out.empty())
       fmt::print(stderr, "note: no ffmpeg here, so the frames go to {}/\n", out_.string());
   }
 
@@ -165,6 +164,15 @@ private:
 
 } // namespace
 
+PictureTarget picture_target(const PlayOptions& options, const Scene& scene) {
+  if (options.no_pictures) return {};
+  const bool chosen = !options.at.empty() || options.worst;
+  const fs::path out = options.out;
+  const bool film = !chosen && (out.empty() ? ffmpeg_available() : out.extension() == ".mp4");
+  if (!out.empty()) return {out, film};
+  return {film ? scene.name() + ".mp4" : chosen ? "." : scene.name() + "-frames", film};
+}
+
 int play_headless(const PlayOptions& options, const Draped& first, const Draped* other) {
   const LoadedScene& scene = first.scene;
   Session session(scene);
@@ -225,7 +233,7 @@ int play_headless(const PlayOptions& options, const Draped& first, const Draped*
     json["why"] = json_of(*explainer->why());
     for (const std::string& line : text_of(*explainer->why())) fmt::print("{}\n", line);
   }
-  if (!options.json.empty()) write_file(options.json, json.dump(2) + "\n");
+  if (!options.json.empty()) write_file(options.json, json_text(json));
   if (!written.empty()) fmt::print("wrote {}\n", written);
   tell_recoveries(session.troubles());
   if (diverged) fmt::print(stderr, "tutu: {}\n", failed.failure()->message());

@@ -48,6 +48,13 @@ std::pair<int, int> size_of(const std::string& text);
 /// Once through the motion, or options.frames.
 int frames_to_play(const PlayOptions& options, const LoadedScene& scene);
 
+/// Where a run without a window puts its pictures: one film, or a folder of PNGs; no path for none.
+struct PictureTarget {
+  std::filesystem::path path;
+  bool film = false;
+};
+PictureTarget picture_target(const PlayOptions& options, const Scene& scene);
+
 /// Both return the exit status. `other`: with is_split only.
 int play_headless(const PlayOptions& options, const Draped& first, const Draped* other);
 /// Goes on with whatever file the user opens next.

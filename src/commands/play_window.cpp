@@ -1,6 +1,7 @@
 // Playing in a window, and what it showed when it closed.
 #include "rig/error.h"
 #include "rig/io/file_io.h"
+#include "src/base/json_text.h"
 #include "src/commands/commands.h"
 #include "src/commands/play_options.h"
 #include "src/scene/load.h"
@@ -118,7 +119,7 @@ int play_in_window(const PlayOptions& options, Draped first, std::optional<Drape
       json = json_of(player, end);
       json["proxy_edit"] = edit.editor().json();
     }
-    if (!options.json.empty()) write_file(options.json, json.dump(2) + "\n");
+    if (!options.json.empty()) write_file(options.json, json_text(json));
     if (!stopped.empty()) fmt::print(stderr, "tutu: {}\n", stopped);
     if (!end.open) return stopped.empty() ? k_ok : k_not_met;
     viewer.layers = end.layers;

@@ -4,9 +4,12 @@
 #include "rig/import/import.h"
 #include "rig/io/clip_file.h"
 #include "rig/io/file_io.h"
+#include "src/base/json_text.h"
+#include "src/base/outputs.h"
 #include "src/commands/commands.h"
 #include "src/options/scene_options.h"
 #include "src/view/pose/joint_limits_file.h"
+#include "src/view/pose/pose_files.h"
 #include "src/view/pose/pose_window.h"
 #include "src/view/render/png.h"
 
@@ -25,12 +28,15 @@ struct Options {
   int width = 1280, height = 800;
 };
 
-/// A place that cannot be written to is told before any work is done.
-void check_writable(const fs::path& file) {
-  (void)PendingFile(file);
-  const fs::path folder = file.parent_path().empty() ? fs::path(".") : file.parent_path();
-  if (::access(folder.c_str(), W_OK) != 0)
-    throw InputError(file.string(), "", "a folder that cannot be written to", "one that can");
+/// All that the editor writes. The motion may be the clip itself: then it is edited in place.
+void check_files(const Options& options, const fs::path& clip) {
+  std::vector<Output> outputs = {{"--out", clip}, {"--json", options.json}, {"--screenshot", options.screenshot}};
+  for (const fs::path& text : three_text_paths(clip)) outputs.push_back({"the clip's three texts", text});
+  std::vector<fs::path> inputs = {options.character};
+  std::error_code none;
+  if (!options.motion.empty() && !fs::equivalent(options.motion, clip, none)) inputs.emplace_back(options.motion);
+  if (!options.limits.empty()) inputs.emplace_back(options.limits);
+  check_outputs(outputs, inputs);
 }
 
 /// Where the work goes: --out, else back to the motion, else a new file named after the character.
@@ -45,9 +51,7 @@ fs::path clip_file(const Options& options) {
 
 int run(const Options& options) {
   const fs::path file = clip_file(options);
-  check_writable(file);
-  if (!options.json.empty()) check_writable(options.json);
-  if (!options.screenshot.empty()) check_writable(options.screenshot);
+  check_files(options, file);
   const rig::Character character = rig::import_character(options.character).character;
   const rig::Skeleton& skeleton = character.skeleton;
   const fs::path begin = options.motion.empty() ? file : fs::path(options.motion); // work goes on where it was left
@@ -64,6 +68,7 @@ int run(const Options& options) {
 
   Editor editor(character, std::move(start), file, std::move(limits));
   if (joint) editor.select(*joint);
+  if (!editor.message().empty()) fmt::print(stderr, "note: {}\n", editor.message());
   if (editor.question() == EditorQuestion::take_up_autosave)
     fmt::print("found unsaved work of an earlier session: {}\n", editor.autosave().file().string());
   if (!options.screenshot.empty()) {
@@ -72,7 +77,7 @@ int run(const Options& options) {
   } else {
     run_pose_window(editor, {options.width, options.height, options.json});
   }
-  if (!options.json.empty()) write_file(options.json, editor.json().dump(2) + "\n");
+  if (!options.json.empty()) write_file(options.json, json_text(editor.json()));
   return k_ok;
 }
 

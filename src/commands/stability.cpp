@@ -1,6 +1,8 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
+#include "src/base/json_text.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/options/scene_options.h"
@@ -53,7 +55,6 @@ void write_pictures(const std::vector<StabilityMap>& maps, const SceneSetting& s
 int run(const Options& options) {
   const fs::path folder = options.out;
   if (!options.no_pictures) require_chart(folder / "map.svg"); // no gnuplot is told before long work
-  if (!options.json.empty()) (void)PendingFile(options.json);
   catch_interrupt();
   LoadedScene scene = options.scene.load();
   if (options.fixed_substeps) scene.settings.adaptive_substeps = false;
@@ -61,8 +62,8 @@ int run(const Options& options) {
   const SceneSetting setting = scene_setting(scene);
   if (std::isinf(stiffest(setting)->step_limit))
     throw InputError(scene.file, "/garments", "every particle held", "a garment that moves");
-  fs::create_directories(folder);
-  (void)PendingFile(folder / "cells.csv");
+  check_outputs({{"--json", options.json}, {"--out", folder, true}}, inputs_of(scene.files));
+  const FolderLock lock(folder, "tutu stability");
   const auto start = draped_start(scene);
   if (!start) return k_not_met;
 
@@ -87,7 +88,7 @@ int run(const Options& options) {
     return k_not_met;
   }
   write_file(folder / "cells.csv", maps_csv(maps));
-  if (!options.json.empty()) write_file(options.json, maps_json(maps, scene, setting, what).dump(2) + "\n");
+  if (!options.json.empty()) write_file(options.json, json_text(maps_json(maps, scene, setting, what)));
   if (!options.no_pictures) write_pictures(maps, setting, folder);
   fmt::print("{}wrote {}\n", maps_text(maps, scene, setting), folder.string());
   const bool safe = std::all_of(maps.begin(), maps.end(), [&](const StabilityMap& map) {

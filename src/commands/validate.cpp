@@ -2,6 +2,8 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
+#include "src/base/json_text.h"
+#include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/measure/validation.h"
@@ -31,10 +33,9 @@ Judge judge_named(const std::string& name) {
 }
 
 int run(const Options& options) {
-  for (const std::string& file : {options.json, options.html})
-    if (!file.empty()) (void)PendingFile(file); // a place that cannot be written is told now
   catch_interrupt();
   const LoadedScene scene = options.scene.load();
+  check_outputs({{"--json", options.json}, {"--html", options.html}}, inputs_of(scene.files));
   if (options.reach && scene.garments.empty())
     throw InputError("", "--reach", scene.file + " without garments", "a scene with garments");
 
@@ -72,7 +73,7 @@ int run(const Options& options) {
     return k_not_met;
   }
   if (!options.html.empty()) write_file(options.html, validation_html(validation, scene, verdict, maps, no_maps));
-  if (!options.json.empty()) write_file(options.json, validation_json(validation, scene, verdict).dump(2) + "\n");
+  if (!options.json.empty()) write_file(options.json, json_text(validation_json(validation, scene, verdict)));
   fmt::print("{}", validation_text(validation, scene, verdict));
   if (!options.html.empty()) fmt::print("wrote {}\n", options.html);
   if (validation.cloth_failure) fmt::print(stderr, "tutu: {}\n", *validation.cloth_failure);

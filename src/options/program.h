@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 namespace tutu::app {
 
@@ -12,5 +13,7 @@ inline constexpr int k_bad_input = 2; ///< bad usage or input
 
 /// Parses and runs. `status` is what the command that ran has set; what is thrown becomes a message and k_bad_input.
 int run_program(CLI::App& app, int argc, const char* const* argv, const int& status);
+/// The same with the words of a JSON file (a list of strings) for arguments.
+int run_program_on_file(CLI::App& app, const std::filesystem::path& file, const int& status);
 
 } // namespace tutu::app

@@ -6,6 +6,7 @@
 #include "proxies/body/body_mesh.h"
 #include "proxies/collider.h"
 #include "rig/character.h"
+#include "rig/text.h"
 #include "src/run/settings.h"
 #include "src/run/skin_pins.h"
 
@@ -30,7 +31,8 @@ struct Scene {
   std::vector<std::vector<int>> attachment_joints; ///< [garment][attachment]: joint; of one on the skin, the main one
   std::vector<SkinPins> skin_pins;                 ///< [garment]: of attachments on the skin
 
-  std::string name() const { return std::filesystem::path(file).stem().string(); }
+  /// For people, titles and files that are named after it; without control characters, whatever the file is called.
+  std::string name() const { return plain_text(std::filesystem::path(file).stem().string()); }
   bool collides_with_body() const { return settings.backend == proxies::Backend::mesh; }
 };
 

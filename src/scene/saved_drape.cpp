@@ -8,7 +8,8 @@ namespace tutu::app {
 
 std::optional<GarmentPositions> saved_drape(const LoadedScene& scene, bool* stale) {
   *stale = false;
-  if (!std::filesystem::exists(scene.files.drape)) return std::nullopt;
+  std::error_code error; // a name that no file can have, say: then there is none
+  if (!std::filesystem::exists(scene.files.drape, error)) return std::nullopt;
   const cloth::Drape saved = cloth::read_drape(scene.files.drape);
   GarmentPositions positions;
   bool fits = saved.fingerprint == drape_fingerprint(scene) && saved.garments.size() == scene.garments.size();

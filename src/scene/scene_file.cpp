@@ -1,5 +1,6 @@
 #include "src/scene/scene_file.h"
 
+#include "cloth/garment/garment_file.h"
 #include "rig/io/json_file.h"
 
 namespace tutu::app {
@@ -17,8 +18,11 @@ fs::path path_in(const JsonValue& json) {
 /// The same for a file that is read.
 fs::path existing_in(const JsonValue& json) {
   const fs::path path = path_in(json);
-  if (!fs::is_regular_file(path))
-    throw json.error("no file " + path.string(), "the path of a file, from the scene's folder");
+  std::error_code error; // a name that is too long, a loop of links
+  if (!fs::is_regular_file(path, error))
+    throw json.error((error && error != std::errc::no_such_file_or_directory ? error.message() + ": " : "") +
+                         "no file " + path.string(),
+                     "the path of a file, from the scene's folder");
   return path;
 }
 
@@ -78,6 +82,28 @@ GarmentEntry read_garment_entry(const JsonValue& json) {
 }
 
 } // namespace
+
+std::vector<fs::path> inputs_of(const SceneFiles& files) {
+  std::vector<fs::path> inputs = {files.file, files.character};
+  const auto add = [&](const std::optional<fs::path>& file) {
+    if (file) inputs.push_back(*file);
+  };
+  if (const auto* clip = std::get_if<ClipMotion>(&files.motion)) {
+    add(clip->clip);
+    add(clip->retarget_from);
+  } else if (const auto* texts = std::get_if<rig::ThreeTexts>(&files.motion)) {
+    for (const fs::path& text : {texts->translations, texts->rotations, texts->times}) add(text);
+    add(texts->joints);
+  } else if (const auto* take = std::get_if<MocapMotion>(&files.motion)) {
+    add(take->bvh);
+  }
+  add(files.proxies);
+  for (const GarmentEntry& entry : files.garments) {
+    add(entry.file);
+    for (const fs::path& named : cloth::files_named_by_garment(entry.file)) add(named);
+  }
+  return inputs;
+}
 
 SceneDescription read_scene(const fs::path& file) {
   const JsonValue json = JsonValue::read(file);

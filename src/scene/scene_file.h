@@ -58,6 +58,10 @@ struct SceneDescription : SceneFiles {
   RunSettings settings;
 };
 
+/// All files that a scene is read from: its own, and those that these name (of a character's file not its buffers).
+/// Throws InputError as read_garment.
+std::vector<std::filesystem::path> inputs_of(const SceneFiles& files);
+
 /// Throws InputError with file, JSON pointer, found and expected.
 SceneDescription read_scene(const std::filesystem::path& file);
 

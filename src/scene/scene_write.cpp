@@ -1,6 +1,7 @@
 #include "src/scene/scene_write.h"
 
 #include "rig/io/file_io.h"
+#include "src/base/json_text.h"
 
 #include <nlohmann/json.hpp>
 
@@ -87,7 +88,7 @@ void write_scene(const SceneDescription& d, const fs::path& file, const std::str
                        {"features", cloth::k_contact_features_names[static_cast<std::size_t>(d.settings.features)]},
                        {"swept", d.settings.swept}};
   json["drape"] = paths(d.drape);
-  write_file(file, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_file(file, json_text(json));
 }
 
 } // namespace tutu::app

@@ -77,12 +77,6 @@ private:
   std::vector<Box> boxes_;
 };
 
-/// A name as a column of a data block, without what would end it.
-std::string data_text(std::string text) {
-  std::replace(text.begin(), text.end(), '"', '\'');
-  return '"' + text + '"';
-}
-
 /// Place of the cross, and of its upright text, which keeps a line from the one before.
 std::string failed_rows(std::vector<std::pair<double, std::string>> failures, double left, double right, double y) {
   std::sort(failures.begin(), failures.end());
@@ -92,7 +86,7 @@ std::string failed_rows(std::vector<std::pair<double, std::string>> failures, do
   double last = 0.0;
   for (const auto& [x, text] : failures) {
     last = std::max(x, last * line);
-    rows += fmt::format("{} {} {} {}\n", x, y, last, data_text(text));
+    rows += fmt::format("{} {} {} {}\n", x, y, last, gnuplot_datum(text));
   }
   return rows;
 }
@@ -139,7 +133,7 @@ void write_chart_picture(const std::vector<ChartPoint>& points, const ErrorAxis&
     const Drawn text = places.place(pixels(place(points[i])), points[i].name.size());
     const Drawn at = place(points[i]), to = {left * std::pow(right / left, text.x / k_plot_width),
                                              bottom * std::pow(top / bottom, text.y / k_plot_height)};
-    labels += fmt::format("{} {} {} {} {}\n", to.x, to.y, data_text(points[i].name), at.x - to.x, at.y - to.y);
+    labels += fmt::format("{} {} {} {} {}\n", to.x, to.y, gnuplot_datum(points[i].name), at.x - to.x, at.y - to.y);
     if (points[i].named) rings += fmt::format("{} {}\n", at.x, at.y);
   }
 

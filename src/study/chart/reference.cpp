@@ -1,6 +1,7 @@
 #include "src/study/chart/reference.h"
 
 #include "rig/error.h"
+#include "rig/io/file_io.h"
 #include "src/base/content_hash.h"
 #include "src/base/progress.h"
 #include "src/base/workers.h"
@@ -162,6 +163,7 @@ std::optional<Reference> obtain_reference(const LoadedScene& scene, const Refere
                                           int jobs, const std::function<std::optional<GarmentPositions>()>& start,
                                           const std::function<bool()>& go_on) {
   const fs::path path = reference_path(cache, scene, plan);
+  sweep_leftovers(cache);
   if (fs::exists(path)) return read_reference(path, scene.name(), reference_fingerprint(scene, plan));
   fs::create_directories(cache);
   Levels levels(scene, plan, path, go_on);

@@ -2,6 +2,7 @@
 
 #include "rig/error.h"
 #include "rig/io/file_io.h"
+#include "src/base/json_text.h"
 
 #include <algorithm>
 #include <chrono>
@@ -21,26 +22,24 @@ constexpr std::size_t k_longest_array = 1000; // Slurm's own default allows indi
 constexpr int k_tries = 3;
 constexpr int k_looks_until_lost = 10; // a file of another machine may take seconds to be seen here
 
-/// 'as the shell reads one word'.
-std::string quoted(const std::string& word) {
-  std::string result = "'";
-  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return result + "'";
-}
-
-std::string script_of(const fs::path& folder) {
-  return fmt::format(R"(#!/bin/sh
-# A cell of tutu chart: the line of calls.txt that the job's index in the array names. Its end is told by a file.
+/// The same for every chart: what is run, and where, comes as arguments, and a call's words as a file of their own that
+/// no shell reads. $1: folder to run in; $2: the program; $3: folder of the calls.
+constexpr const char* k_script = R"(#!/bin/sh
+# A cell of tutu chart: the call that the job's index in the array names. Its end is told by a file.
 #SBATCH --job-name=tutu-cell
 #SBATCH --ntasks=1
-cd {} || exit 1
+cd "$1" || exit 1
 n=$SLURM_ARRAY_TASK_ID
-call=$(sed -n "${{n}}p" {}/calls.txt)
-eval "$call" > /dev/null 2> {}/log-$n
-echo $? > {}/end-$n.new && mv {}/end-$n.new {}/end-$n
-)",
-                     quoted(fs::current_path().string()), quoted(folder.string()), quoted(folder.string()),
-                     quoted(folder.string()), quoted(folder.string()), quoted(folder.string()));
+"$2" --arguments "$3/call-$n.json" > /dev/null 2> "$3/log-$n"
+echo $? > "$3/end-$n.new" && mv "$3/end-$n.new" "$3/end-$n"
+)";
+
+/// tutu-cell beside this program.
+fs::path cell_program() {
+  const fs::path program = fs::read_symlink("/proc/self/exe").parent_path() / "tutu-cell";
+  if (!fs::exists(program))
+    throw InputError(program.string(), "", "no such program", "tutu-cell beside tutu, which the jobs of --slurm run");
+  return program;
 }
 
 /// One submission: some of the calls, each with its line and its files.
@@ -49,17 +48,12 @@ public:
   Submission(const std::vector<std::vector<std::string>>& arguments, std::vector<std::size_t> which, fs::path folder)
       : which_(std::move(which)), folder_(std::move(folder)) {
     fs::create_directories(folder_);
-    const std::string program = quoted(fs::read_symlink("/proc/self/exe").string());
-    std::string calls;
-    for (const std::size_t k : which_) {
-      calls += program;
-      for (const std::string& word : arguments[k]) calls += ' ' + quoted(word);
-      calls += '\n';
-    }
-    write_file(folder_ / "calls.txt", calls);
-    write_file(folder_ / "array.sh", script_of(folder_));
+    for (std::size_t line = 1; line <= which_.size(); ++line)
+      write_file(folder_ / fmt::format("call-{}.json", line), json_text(arguments[which_[line - 1]]));
+    write_file(folder_ / "array.sh", k_script);
     const ProcessEnd end = run_command({"sbatch", "--parsable", fmt::format("--array=1-{}", which_.size()),
-                                        "--output=/dev/null", (folder_ / "array.sh").string()});
+                                        "--output=/dev/null", (folder_ / "array.sh").string(),
+                                        fs::current_path().string(), cell_program().string(), folder_.string()});
     if (!end.good()) throw std::runtime_error("sbatch: " + end.last_message());
     job_ = end.output.substr(0, end.output.find_first_of(";\n")); // "id" or "id;cluster"
     for (std::size_t line = 1; line <= which_.size(); ++line) open_.insert(line);

@@ -2,35 +2,23 @@
 
 #include "rig/error.h"
 #include "rig/io/file_io.h"
+#include "rig/text.h"
+#include "src/base/child_process.h"
 
-#include <cstdio>
-#include <cstdlib>
 #include <fmt/format.h>
 #include <stdexcept>
-#include <string_view>
-#include <unistd.h>
 
 namespace tutu::app {
 namespace {
 
-bool on_path(const char* program) {
-  const char* path = std::getenv("PATH");
-  std::string_view rest = path ? path : "";
-  while (!rest.empty()) {
-    const std::string_view folder = rest.substr(0, rest.find(':'));
-    rest.remove_prefix(std::min(rest.size(), folder.size() + 1));
-    if (!folder.empty() && ::access((std::filesystem::path(folder) / program).c_str(), X_OK) == 0) return true;
-  }
-  return false;
-}
-
 std::string script_of(const Chart& chart) {
-  std::string text = fmt::format("set title {} noenhanced\nset xlabel {}\nset ylabel {}\nset yrange [0:*]\nset "
-                                 "grid\nset key top right noenhanced\n",
-                                 gnuplot_text(chart.title), gnuplot_text(chart.x), gnuplot_text(chart.y));
+  std::string text =
+      fmt::format("set title {} noenhanced\nset xlabel {} noenhanced\nset ylabel {} noenhanced\nset yrange [0:*]\nset "
+                  "grid\nset key top right noenhanced\n",
+                  gnuplot_text(chart.title), gnuplot_text(chart.x), gnuplot_text(chart.y));
   if (!chart.right.empty())
-    text +=
-        fmt::format("set y2label {}\nset y2tics\nset ytics nomirror\nset y2range [0:*]\n", gnuplot_text(chart.right));
+    text += fmt::format("set y2label {} noenhanced\nset y2tics\nset ytics nomirror\nset y2range [0:*]\n",
+                        gnuplot_text(chart.right));
   std::string plot, data;
   for (const ChartLine& line : chart.lines) {
     plot += fmt::format("{}'-' with linespoints {} title {}", plot.empty() ? "plot " : ", ",
@@ -53,22 +41,28 @@ void require_chart(const std::filesystem::path& file) {
 
 std::string gnuplot_text(std::string_view text) {
   std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  // Not doubled, as gnuplot has it: 5.4 reads a text that begins with one wrongly, and goes on reading commands.
+  for (const char c : plain_text(text, ' ')) result += c == '\'' ? std::string("\u2019") : std::string(1, c);
   return result + "'";
+}
+
+std::string gnuplot_datum(std::string_view text) {
+  std::string result = plain_text(text, ' ');
+  for (char& c : result)
+    if (c == '"' || c == '\\') c = c == '"' ? '\'' : '/';
+  return '"' + result + '"';
 }
 
 void draw_with_gnuplot(const std::string& script, int width, int height, const std::filesystem::path& file) {
   require_chart(file);
-  PendingFile pending(file);
   const bool svg = file.extension() == ".svg";
-  const std::string head =
-      fmt::format("set terminal {} size {},{}{}\nset output {}\n", svg ? "svg" : "png", width, height,
-                  svg ? " font 'sans,13' background 'white'" : "", gnuplot_text(pending.temporary().string()));
-  std::FILE* gnuplot = ::popen("gnuplot", "w");
-  if (!gnuplot) throw std::runtime_error(file.string() + ": gnuplot did not start");
-  for (const std::string* text : {&head, &script}) std::fwrite(text->data(), 1, text->size(), gnuplot);
-  if (::pclose(gnuplot) != 0) throw std::runtime_error(file.string() + ": gnuplot failed");
-  pending.commit();
+  // The picture comes by stdout: so the file's name is no part of the script. No settings of the user's are read.
+  const ProcessEnd end = run_command({"gnuplot", "--default-settings"},
+                                     fmt::format("set terminal {} size {},{}{}\n{}", svg ? "svg" : "png", width, height,
+                                                 svg ? " font 'sans,13' background 'white'" : "", script));
+  if (!end.good() || end.output.empty())
+    throw std::runtime_error(file.string() + ": gnuplot failed: " + end.last_message());
+  write_file(file, end.output);
 }
 
 void write_chart(const Chart& chart, const std::filesystem::path& file) {

@@ -24,8 +24,13 @@ struct Chart {
 /// before long work.
 void require_chart(const std::filesystem::path& file);
 
-/// A text as gnuplot reads it, between single quotes.
+// Every text of a script goes through one of these two: whatever it holds, it is read as text and ends where it should.
+
+/// Between single quotes, in which gnuplot knows no commands and no escapes; what would end the line is a blank, a
+/// quote becomes a typographic one.
 std::string gnuplot_text(std::string_view text);
+/// A column of a data block.
+std::string gnuplot_datum(std::string_view text);
 
 /// Runs a script (without terminal and output) on a picture of so many pixels. Throws as write_chart.
 void draw_with_gnuplot(const std::string& script, int width, int height, const std::filesystem::path& file);

@@ -35,9 +35,9 @@ float ground_of(const rig::Character& character) {
 Editor::Editor(const rig::Character& character, EditState start, const std::filesystem::path& clip_file,
                std::vector<rig::JointLimit> limits)
     : character_(character), limbs_(find_limbs(character.skeleton)), clip_file_(clip_file), autosave_(clip_file),
-      document_(std::move(start)), left_behind_(autosave_.found(character.skeleton)),
-      ground_height_(ground_of(character)) {
+      document_(std::move(start)), ground_height_(ground_of(character)) {
   drag_settings_.limits = std::move(limits);
+  left_behind_ = autosave_.found(character.skeleton, message_);
   if (left_behind_) question_ = EditorQuestion::take_up_autosave;
 }
 

@@ -13,6 +13,15 @@ fs::path beside(const fs::path& clip_file, const char* ending) {
   return clip_file.parent_path() / (clip_file.stem().string() + ending);
 }
 
+/// "x.autosave.json" -> "x.autosave.damaged-1.json", or the first after it that is not taken.
+fs::path free_name(const fs::path& file) {
+  std::error_code error;
+  for (int n = 1;; ++n) {
+    const fs::path name = fs::path(file).replace_extension(".damaged-" + std::to_string(n) + ".json");
+    if (!fs::exists(name, error)) return name;
+  }
+}
+
 } // namespace
 
 std::vector<fs::path> three_text_paths(const fs::path& clip_file) {
@@ -29,9 +38,18 @@ void write_pose_files(const EditState& state, const rig::Skeleton& skeleton, con
 
 Autosave::Autosave(const fs::path& clip_file) : file_(beside(clip_file, ".autosave.json")) {}
 
-std::optional<EditState> Autosave::found(const rig::Skeleton& skeleton) const {
-  if (!fs::exists(file_)) return std::nullopt;
-  EditState state = edit_state(rig::read_clip(file_), skeleton);
+std::optional<EditState> Autosave::found(const rig::Skeleton& skeleton, std::string& trouble) const {
+  std::error_code error;
+  if (!fs::exists(file_, error)) return std::nullopt;
+  EditState state;
+  try {
+    state = edit_state(rig::read_clip(file_), skeleton);
+  } catch (const std::runtime_error& problem) {
+    const fs::path aside = free_name(file_);
+    fs::rename(file_, aside, error);
+    trouble = std::string(problem.what()) + (error ? "; it stays where it is" : "; put aside as " + aside.string());
+    return std::nullopt;
+  }
   if (state.keys.back().name != k_unsaved_pose) return state;
   state.pose = *state.keys.back().pose;
   state.loose = true;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace tutu::app {
@@ -23,8 +24,9 @@ public:
   explicit Autosave(const std::filesystem::path& clip_file);
 
   const std::filesystem::path& file() const { return file_; }
-  /// What an earlier session left. Throws InputError when it does not fit the skeleton.
-  std::optional<EditState> found(const rig::Skeleton& skeleton) const;
+  /// What an earlier session left. One that cannot be read, or does not fit the skeleton, is put aside under a name of
+  /// its own, which `trouble` tells with the reason: no work is locked out by it, and nothing of it is lost.
+  std::optional<EditState> found(const rig::Skeleton& skeleton, std::string& trouble) const;
   /// Brings the file up to date with the document: written when dirty, else removed.
   void update(const EditDocument& document, const rig::Skeleton& skeleton) const;
   void remove() const;

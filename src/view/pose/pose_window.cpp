@@ -1,6 +1,7 @@
 #include "src/view/pose/pose_window.h"
 
 #include "rig/io/file_io.h"
+#include "src/base/json_text.h"
 #include "src/view/pose/pose_overlay.h"
 #include "src/view/pose/pose_panels.h"
 #include "src/view/pose/pose_view.h"
@@ -113,7 +114,7 @@ void run_pose_window(Editor& editor, const PoseWindowOptions& options) {
       first = false;
     }
     if (options.state_file.empty()) continue;
-    if (std::string state = editor.json().dump(2) + "\n"; state != written_state) {
+    if (std::string state = json_text(editor.json()); state != written_state) {
       write_file(options.state_file, state);
       written_state = std::move(state);
     }

@@ -1,12 +1,12 @@
 #include "src/view/render/video.h"
 
 #include "rig/io/file_io.h"
+#include "src/base/child_process.h"
 
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -85,16 +85,7 @@ struct VideoWriter::Encoder {
   bool has_frames = false;
 };
 
-bool ffmpeg_available() {
-  const char* path = std::getenv("PATH");
-  std::string_view rest = path ? path : "";
-  while (!rest.empty()) {
-    const std::string_view folder = rest.substr(0, rest.find(':'));
-    rest.remove_prefix(std::min(rest.size(), folder.size() + 1));
-    if (!folder.empty() && ::access((std::filesystem::path(folder) / "ffmpeg").c_str(), X_OK) == 0) return true;
-  }
-  return false;
-}
+bool ffmpeg_available() { return on_path("ffmpeg"); }
 
 void VideoWriter::Encoder::start(int width, int height, double frames_per_second) {
   const std::vector<std::string> words_of_command = {

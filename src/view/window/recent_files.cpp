@@ -1,6 +1,7 @@
 #include "src/view/window/recent_files.h"
 
 #include "rig/io/file_io.h"
+#include "rig/text.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -36,6 +37,7 @@ void remember_file(const std::filesystem::path& file) {
   if (list.empty()) return;
   try {
     const std::string path = fs::absolute(file).lexically_normal().string();
+    if (!is_plain_text(path)) return; // a line each
     std::vector<std::string> files = recent_files();
     std::erase(files, path);
     files.insert(files.begin(), path);
@@ -43,6 +45,7 @@ void remember_file(const std::filesystem::path& file) {
     std::string text;
     for (const std::string& each : files) text += each + "\n";
     fs::create_directories(list.parent_path());
+    sweep_leftovers(list.parent_path());
     write_file(list, text);
   } catch (const std::exception&) { // a read-only home is no reason not to play
   }

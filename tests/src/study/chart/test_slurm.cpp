@@ -77,10 +77,13 @@ constexpr const char* k_runs_all_but = R"(
 case "$*" in *--help*) exit 0 ;; esac
 echo "$*" >> submissions
 round=$(wc -l < submissions)
-for word; do case $word in --array=1-*) last=${word#--array=1-} ;; *.sh) script=$word ;; esac; done
+while [ $# -gt 0 ]; do
+  case $1 in --array=1-*) last=${1#--array=1-} ;; *.sh) script=$1; shift; break ;; esac
+  shift
+done
 for n in $(seq "$last"); do
   case " $LOST " in *" $round:$n "*) continue ;; esac
-  SLURM_ARRAY_TASK_ID=$n sh "$script"
+  SLURM_ARRAY_TASK_ID=$n sh "$script" "$@"
 done
 echo "$round;here"
 )";

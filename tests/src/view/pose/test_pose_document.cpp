@@ -309,20 +309,21 @@ TEST_F(PoseFiles, AJumpThatCannotBeIsNotWritten) {
 }
 
 TEST_F(PoseFiles, TheAutosaveHoldsKeysAndThePoseInHand) {
+  std::string trouble;
   std::mt19937 random(13);
   const Autosave autosave(folder_ / "steps.json");
   EXPECT_EQ(autosave.file(), folder_ / "steps.autosave.json");
-  EXPECT_FALSE(autosave.found(dancer()));
+  EXPECT_FALSE(autosave.found(dancer(), trouble));
   EditDocument document(edit_state_at_rest(dancer(), "steps"));
   autosave.update(document, dancer());
-  EXPECT_FALSE(autosave.found(dancer())); // nothing to lose
+  EXPECT_FALSE(autosave.found(dancer(), trouble)); // nothing to lose
 
   EditState next = document.state();
   next.pose = random_pose(random);
   add_next_key(next, 0.5);
   document.change(next);
   autosave.update(document, dancer());
-  auto found = autosave.found(dancer());
+  auto found = autosave.found(dancer(), trouble);
   ASSERT_TRUE(found);
   EXPECT_TRUE(same_clip(*found, document.state()));
   EXPECT_FALSE(found->loose);
@@ -331,7 +332,7 @@ TEST_F(PoseFiles, TheAutosaveHoldsKeysAndThePoseInHand) {
   next.loose = true;
   document.change(next);
   autosave.update(document, dancer());
-  found = autosave.found(dancer());
+  found = autosave.found(dancer(), trouble);
   ASSERT_TRUE(found);
   EXPECT_TRUE(same_clip(*found, document.state()));
   EXPECT_TRUE(found->loose);
@@ -341,6 +342,18 @@ TEST_F(PoseFiles, TheAutosaveHoldsKeysAndThePoseInHand) {
   document.undo();
   autosave.update(document, dancer());
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(PoseFiles, ADamagedAutosaveIsPutAsideAndSaid) {
+  const Autosave autosave(folder_ / "steps.json");
+  for (const char* damaged : {"", "{", "[]", R"({"keys": [{"time": 0, "joints": {"Nobody": {}}}]})"}) {
+    write_file(autosave.file(), damaged);
+    std::string trouble;
+    EXPECT_FALSE(autosave.found(dancer(), trouble)) << damaged;
+    EXPECT_NE(trouble.find("put aside as "), trouble.npos) << trouble;
+    EXPECT_FALSE(std::filesystem::exists(autosave.file()));
+    EXPECT_EQ(read_file(trouble.substr(trouble.find("put aside as ") + 13)), damaged) << "nothing is lost";
+  }
 }
 
 } // namespace
