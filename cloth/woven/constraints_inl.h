@@ -1,4 +1,4 @@
-// What holds a woven sheet together: springs, bending, whole warp threads. For woven_kernel.cpp alone.
+// What holds a woven sheet together: springs, bending, whole warp threads. For kernel.cpp alone.
 #if defined(TUTU_CLOTH_WOVEN_CONSTRAINTS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TUTU_CLOTH_WOVEN_CONSTRAINTS_INL_H
 #undef TUTU_CLOTH_WOVEN_CONSTRAINTS_INL_H

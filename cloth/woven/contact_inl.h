@@ -1,4 +1,4 @@
-// A woven sheet against colliders: particles, then the edges and faces of cells. For woven_kernel.cpp alone.
+// A woven sheet against colliders: particles, then the edges and faces of cells. For kernel.cpp alone.
 #if defined(TUTU_CLOTH_WOVEN_CONTACT_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TUTU_CLOTH_WOVEN_CONTACT_INL_H
 #undef TUTU_CLOTH_WOVEN_CONTACT_INL_H

@@ -1,4 +1,4 @@
-// The motion of a woven sheet without constraints: prediction, velocities, how far and how wide. For woven_kernel.cpp
+// The motion of a woven sheet without constraints: prediction, velocities, how far and how wide. For kernel.cpp
 // alone.
 #if defined(TUTU_CLOTH_WOVEN_MOTION_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TUTU_CLOTH_WOVEN_MOTION_INL_H

@@ -1,5 +1,5 @@
 // Rows of a woven sheet as vectors of the target: tags, three-dimensional vectors, loops over rows, the halo. For
-// woven_kernel.cpp alone, which compiles it once for each target.
+// kernel.cpp alone, which compiles it once for each target.
 #if defined(TUTU_CLOTH_WOVEN_VECTORS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TUTU_CLOTH_WOVEN_VECTORS_INL_H
 #undef TUTU_CLOTH_WOVEN_VECTORS_INL_H

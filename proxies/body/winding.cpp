@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace tutu::proxies::fit {
+namespace tutu::proxies {
 namespace {
 
 constexpr int k_group = 16;   // triangles
@@ -114,4 +114,4 @@ double Winding::at(const Vec3& point) const {
   return large_.solid_angle(point, 0, static_cast<int>(large_.x.size()), open) / (4.0 * std::numbers::pi);
 }
 
-} // namespace tutu::proxies::fit
+} // namespace tutu::proxies

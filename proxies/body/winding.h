@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace tutu::proxies::fit {
+namespace tutu::proxies {
 
 /// The generalised winding number [Jacobson et al. 2013], groups of triangles farther off than twice their size
 /// replaced by their area normals [Barill et al. 2018]: within some hundredths, which is enough to tell 0 from 1.
@@ -34,4 +34,4 @@ private:
 std::vector<rig::Triangle> neighbours_together(std::span<const Vec3> positions,
                                                std::span<const rig::Triangle> triangles);
 
-} // namespace tutu::proxies::fit
+} // namespace tutu::proxies

@@ -24,8 +24,9 @@ constexpr const char* k_expected_surface = "a surface: .obj, .ply, .stl, .gltf o
 constexpr std::uintmax_t k_largest_file = std::uintmax_t{1} << 30; // bytes
 constexpr std::size_t k_most_nodes = 100'000;
 
-/// The formats that carry a skin and whose readers in assimp 5.2.5 stood the tests (tests/rig/test_import_hostile.cpp),
-/// by the names of assimp's readers. Every other reader is removed, so that no content is ever handed to it.
+/// The formats that carry a skin and whose readers in assimp 5.2.5 stood the tests
+/// (tests/rig/import/test_import_hostile.cpp), by the names of assimp's readers. Every other reader is removed, so that
+/// no content is ever handed to it.
 const std::map<std::string, std::string> k_reader_of = {{".dae", "Collada Importer"},
                                                         {".gltf", "glTF2 Importer"},
                                                         {".glb", "glTF2 Importer"},

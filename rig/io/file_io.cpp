@@ -104,7 +104,10 @@ PendingNames g_pending;
 std::string read_file(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (!fs::exists(status)) throw InputError(file.string(), "", "no such file", "a readable file");
+  if (!fs::exists(status)) // a loop of links, a name that is too long, a file where a folder should be: its reason
+    throw InputError(file.string(), "",
+                     error && error != std::errc::no_such_file_or_directory ? error.message() : "no such file",
+                     "a readable file");
   if (!fs::is_regular_file(status))
     throw InputError(file.string(), "", "something that is not a file", "a readable file");
   const std::uintmax_t size = fs::file_size(file, error);

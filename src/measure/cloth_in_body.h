@@ -24,7 +24,7 @@ struct ClothInBody {
   DepthCount particles;                ///< free ones
   DepthCount edges;                    ///< at their middle
   DepthCount triangles;                ///< at their centroid
-  double deepest_of_triangles = 0.0;   ///< m, at any of the k_surface_samples points of a triangle (bench_metrics.h)
+  double deepest_of_triangles = 0.0;   ///< m, at any of the k_surface_samples points of a triangle (frame_metrics.h)
   std::vector<double> particle_depths; ///< m, >= 0, of each free particle
 
   void clear();

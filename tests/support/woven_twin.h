@@ -1,4 +1,4 @@
-// Cloth of threads once more, particle by particle in double: what cloth/woven_kernel.h promises, written from its
+// Cloth of threads once more, particle by particle in double: what cloth/woven/kernel.h promises, written from its
 // formulas. Of the kernel's layout it knows the order only: block after block, in each the columns `blocks` apart.
 #pragma once
 

@@ -13,12 +13,12 @@ namespace tutu::app {
 /// "dance.json" -> dance.translations.txt, dance.rotations.txt, dance.times.txt beside it.
 std::vector<std::filesystem::path> three_text_paths(const std::filesystem::path& clip_file);
 
-/// Writes clip and texts (rig/clip_file.h). Throws InputError on a jump that cannot be, std::runtime_error when a file
+/// Writes clip and texts (rig/io/clip_file.h). Throws InputError on a jump that cannot be, std::runtime_error when a file
 /// cannot be written.
 void write_pose_files(const EditState& state, const rig::Skeleton& skeleton, const std::filesystem::path& clip_file);
 
 /// Work that is not in the files, kept beside them while there is any: a clip like any other, whose last key, called
-/// "unsaved pose", is the pose in hand if that is in no key. Written whole or not at all (rig/file_io.h).
+/// "unsaved pose", is the pose in hand if that is in no key. Written whole or not at all (rig/io/file_io.h).
 class Autosave {
 public:
   explicit Autosave(const std::filesystem::path& clip_file);
