@@ -28,11 +28,13 @@
 #include "cloth/garment/dihedral.h"       // IWYU pragma: export
 #include "cloth/garment/drape_file.h"     // IWYU pragma: export
 #include "cloth/garment/elements.h"       // IWYU pragma: export
+#include "cloth/garment/garment_memory.h" // IWYU pragma: export
 #include "cloth/garment/reach.h"          // IWYU pragma: export
 #include "cloth/garment/springs.h"        // IWYU pragma: export
 #include "cloth/mass_spring.h"            // IWYU pragma: export
 #include "cloth/mesh_xpbd.h"              // IWYU pragma: export
 #include "cloth/metrics.h"                // IWYU pragma: export
+#include "cloth/state/divergence.h"       // IWYU pragma: export
 #include "cloth/state/frame.h"            // IWYU pragma: export
 #include "cloth/state/particles.h"        // IWYU pragma: export
 #include "cloth/state/solver_options.h"   // IWYU pragma: export

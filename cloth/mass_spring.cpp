@@ -16,12 +16,12 @@ void MassSpring::reset(std::span<const Vec3> positions) {
   particles_.positions.assign(positions.begin(), positions.end());
   particles_.velocities.assign(positions.size(), Vec3::Zero());
   forces_.assign(positions.size(), Vec3::Zero());
-  renew_forces(0);
+  renew_forces();
 }
 
 void MassSpring::restore(const Particles& state) {
   particles_ = state;
-  renew_forces(0);
+  renew_forces();
 }
 
 void MassSpring::integrate(const FrameInput& input, double h) {
@@ -34,14 +34,12 @@ void MassSpring::integrate(const FrameInput& input, double h) {
   }
 }
 
-std::optional<Divergence> MassSpring::renew_forces(int substep) {
+bool MassSpring::renew_forces() {
   std::fill(forces_.begin(), forces_.end(), Vec3::Zero());
-  const std::optional<int> bad = add_spring_forces(*garment_, particles_.positions, forces_);
-  if (!bad) return std::nullopt;
-  return describe_divergence(*garment_, *bad, substep, particles_.positions, forces_);
+  return !add_spring_forces(*garment_, particles_.positions, forces_).has_value();
 }
 
-std::optional<Divergence> MassSpring::step(const FrameInput& input, proxies::CollisionQuery& query) {
+std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
   auto time = Clock::now();
   contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
@@ -52,18 +50,27 @@ std::optional<Divergence> MassSpring::step(const FrameInput& input, proxies::Col
     Vec3& v = particles_.velocities[i];
     v -= v.dot(contact.normal) * contact.normal;
   };
+  // What is no number would have spread to its neighbours by the end of the first substep.
+  if (!is_in_world(particles_))
+    if (const auto lost = find_lost({*garment_, 0, h, particles_}); lost && lost->trouble == Trouble::no_number)
+      return *lost;
   for (int substep = 0; substep < input.substeps; ++substep) {
+    if (input.is_stopped()) return Stopped{substep};
     const double s = static_cast<double>(substep + 1) / input.substeps;
     integrate(input, h);
     follow_pins(*garment_, input, s, h, particles_);
     time = lap(time, times_.cloth);
-    if (!is_in_world(particles_)) return find_divergence(*garment_, substep, particles_.positions);
+    if (!is_in_world(particles_)) {
+      std::vector<Vec3> starts = particles_.positions;
+      for (std::size_t i = 0; i < starts.size(); ++i) starts[i] -= h * particles_.velocities[i];
+      return find_trouble({*garment_, substep, h, particles_, starts}, {});
+    }
     contacts_.for_each_contact(query, s, pinned_, particles_, stop_at_surface);
     time = lap(time, times_.contact);
     close_seams(*garment_, pinned_, particles_);
-    const auto divergence = renew_forces(substep);
+    const bool whole = renew_forces();
     time = lap(time, times_.cloth);
-    if (divergence) return divergence;
+    if (!whole) return find_trouble({*garment_, substep, h, particles_}, {});
   }
   return std::nullopt;
 }

@@ -21,7 +21,7 @@ public:
 
   void reset(std::span<const Vec3> positions) override;
   void restore(const Particles& state) override;
-  std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) override;
+  std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
   const ContactCounts& contact_counts() const override { return contacts_.counts(); }
@@ -29,7 +29,7 @@ public:
 
 private:
   void integrate(const FrameInput& input, double h);
-  std::optional<Divergence> renew_forces(int substep);
+  bool renew_forces(); ///< false where a structural spring is broken
 
   const Garment* garment_;
   Particles particles_;

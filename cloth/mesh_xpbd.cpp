@@ -128,18 +128,17 @@ template <class Scalar> void MeshXpbd<Scalar>::solve_constraints(double h, bool 
     if (!pinned_[i]) particles_.positions[i] += (x_[i] - predicted_[i]).template cast<double>();
 }
 
-template <class Scalar> std::optional<Divergence> MeshXpbd<Scalar>::check(int substep) const {
+template <class Scalar> bool MeshXpbd<Scalar>::is_broken() const {
   for (int k = 0; k < garment_->structural_count; ++k) {
     const Spring& spring = garment_->springs[k];
     const double length = (particles_.positions[spring.j] - particles_.positions[spring.i]).norm();
-    if (length <= (1.0 + k_diverged_stretch) * spring.rest_length) continue; // false for a length that is no number
-    return find_divergence(*garment_, substep, particles_.positions);
+    if (!(length <= (1.0 + k_diverged_stretch) * spring.rest_length)) return true; // so is one that is no number
   }
-  return std::nullopt;
+  return false;
 }
 
 template <class Scalar>
-std::optional<Divergence> MeshXpbd<Scalar>::step(const FrameInput& input, proxies::CollisionQuery& query) {
+std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
   auto time = Clock::now();
   contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
@@ -155,19 +154,21 @@ std::optional<Divergence> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
     x -= length > most ? Vec3((most / length) * along) : along;
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
+    if (input.is_stopped()) return Stopped{substep};
     const double s = static_cast<double>(substep + 1) / input.substeps;
+    const Moment now{*garment_, substep, h, particles_, before_};
     predict(input, s, h);
     solve_constraints(h, substep % 2 == 0);
     close_seams(*garment_, pinned_, particles_);
     time = lap(time, times_.cloth);
-    if (!is_in_world(particles_)) return find_divergence(*garment_, substep, particles_.positions);
+    if (!is_in_world(particles_)) return find_trouble(now, {});
     contacts_.for_each_contact(query, s, pinned_, particles_, rub);
     time = lap(time, times_.contact);
     for (int i = 0; i < particles_.count(); ++i)
       if (!pinned_[i]) particles_.velocities[i] = (particles_.positions[i] - before_[i]) / h;
-    auto divergence = check(substep);
+    const bool broken = is_broken();
     time = lap(time, times_.cloth);
-    if (divergence) return divergence;
+    if (broken) return find_trouble(now, {});
   }
   return std::nullopt;
 }

@@ -40,7 +40,7 @@ public:
 
   void reset(std::span<const Vec3> positions) override;
   void restore(const Particles& state) override;
-  std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) override;
+  std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
   const ContactCounts& contact_counts() const override { return contacts_.counts(); }
@@ -70,7 +70,7 @@ private:
   void solve(const Hinge& hinge, Scalar per_h2);
   void solve(const TetherLimit& tether);
   void solve_constraints(double h, bool up_first);
-  std::optional<Divergence> check(int substep) const;
+  bool is_broken() const;
 
   const Garment* garment_;
   Particles particles_;

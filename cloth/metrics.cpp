@@ -39,15 +39,33 @@ void SpreadGatherer::add(double sample) {
 
 Spread SpreadGatherer::spread() const {
   if (count_ == 0) return {};
-  Spread result{max_, 0.0, sum_ / static_cast<double>(count_)};
-  const auto rank = static_cast<std::int64_t>(std::ceil(0.99 * static_cast<double>(count_)));
+  return {max_, percentile(0.99), sum_ / static_cast<double>(count_)};
+}
+
+double SpreadGatherer::percentile(double share) const {
+  const auto rank = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count_)));
   std::int64_t seen = below_;
   for (std::size_t bin = 0; seen < rank && bin < bins_.size(); ++bin) {
     seen += bins_[bin];
     const double upper = std::exp2(k_lowest_octave + static_cast<double>(bin + 1) / k_bins_an_octave);
-    if (seen >= rank) result.p99 = std::min(upper, max_);
+    if (seen >= rank) return std::min(upper, max_);
   }
-  return result;
+  return 0.0;
+}
+
+void PercentileGatherer::add(double sample) {
+  if (all_) return all_->add(sample);
+  first_.push_back(sample);
+  if (first_.size() <= k_exact) return;
+  all_.emplace();
+  for (const double early : first_) all_->add(early);
+  first_ = {};
+}
+
+double PercentileGatherer::percentile(double share) const {
+  if (all_) return all_->percentile(share);
+  std::vector<double> samples = first_;
+  return cloth::percentile(samples, share);
 }
 
 std::vector<double> stretch_of(const Garment& garment, const Particles& particles) {

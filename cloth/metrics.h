@@ -22,12 +22,13 @@ struct Spread {
 double percentile(std::vector<double>& samples, double share);
 Spread spread(std::vector<double> samples);
 
-/// Gathers any number of samples >= 0 in a fixed amount of memory. Largest and mean are exact; the percentile is that
-/// of a histogram with 64 bins an octave, so it is at most 1.1 % too large.
+/// Gathers any number of samples >= 0 in a fixed amount of memory. Largest and mean are exact; percentiles are those of
+/// a histogram with 64 bins an octave, so they are at most 1.1 % too large.
 class SpreadGatherer {
 public:
   void add(double sample);
   Spread spread() const;
+  double percentile(double share) const; ///< nearest rank; 0 for no samples
   std::int64_t count() const { return count_; }
 
 private:
@@ -35,6 +36,20 @@ private:
   std::vector<std::int64_t> bins_ = std::vector<std::int64_t>(k_bins_an_octave * (k_highest_octave - k_lowest_octave));
   std::int64_t count_ = 0, below_ = 0; ///< below: samples under 2^k_lowest_octave, zero among them
   double sum_ = 0.0, max_ = 0.0;
+};
+
+/// The same for percentiles alone, exact up to k_exact samples (a sample a frame: 4.5 minutes at 60 frames/s). Of more
+/// than that all still count, and percentiles are those of SpreadGatherer.
+class PercentileGatherer {
+public:
+  static constexpr std::size_t k_exact = 16384;
+
+  void add(double sample);
+  double percentile(double share) const; ///< nearest rank; 0 for no samples
+
+private:
+  std::vector<double> first_;         ///< all, while they are few
+  std::optional<SpreadGatherer> all_; ///< once they are not
 };
 
 /// length / rest length - 1 of every structural spring: negative where it is pressed together.

@@ -1,7 +1,6 @@
 #include "cloth/recovery.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tutu::cloth {
 namespace {
@@ -26,10 +25,10 @@ bool is_finite(const FrameInput& input) {
 
 } // namespace
 
-void draw_in_edges(const Garment& garment, std::span<Vec3> positions) {
+void draw_in_edges(const Garment& garment, std::span<Vec3> positions, const FrameInput& input) {
   const std::vector<std::uint8_t> pinned = pinned_flags(garment);
   bool drawn = true;
-  for (int pass = 0; pass < k_mending_passes && drawn; ++pass) {
+  for (int pass = 0; pass < k_mending_passes && drawn && !input.is_stopped(); ++pass) {
     drawn = false;
     for (int k = 0; k < garment.structural_count; ++k) {
       const Spring& edge = garment.springs[k];
@@ -63,14 +62,14 @@ void GuardedSolver::restore(const Particles& state) {
   forget();
 }
 
-std::optional<Divergence> GuardedSolver::attempt(FrameInput input, proxies::CollisionQuery& query) {
+std::optional<Unfinished> GuardedSolver::attempt(FrameInput input, proxies::CollisionQuery& query) {
   input.substeps *= refinement_;
   substeps_ = input.substeps;
-  const auto divergence = solver_->step(input, query);
+  const auto end = solver_->step(input, query);
   times_.broad += solver_->times().broad;
   times_.cloth += solver_->times().cloth;
   times_.contact += solver_->times().contact;
-  return divergence;
+  return end;
 }
 
 void GuardedSolver::jump(FrameInput& input) {
@@ -80,7 +79,7 @@ void GuardedSolver::jump(FrameInput& input) {
     way += (input.pins_end[k] - input.pins_start[k]) / static_cast<double>(input.pins_end.size());
   for (Vec3& p : mended_) p += way;
   for (std::size_t k = 0; k < garment_->pins.size(); ++k) mended_[garment_->pins[k].particle] = input.pins_end[k];
-  draw_in_edges(*garment_, mended_);
+  draw_in_edges(*garment_, mended_, input);
   solver_->reset(mended_);
   input.pins_start = input.pins_end;
   input.colliders.start = input.colliders.end;
@@ -88,22 +87,39 @@ void GuardedSolver::jump(FrameInput& input) {
   input.colliders.body_start = input.colliders.body_end;
 }
 
-std::optional<Divergence> GuardedSolver::step(const FrameInput& input, proxies::CollisionQuery& query) {
+/// What of the input is no number.
+Divergence GuardedSolver::nowhere(const FrameInput& input) const {
+  Divergence nowhere;
+  nowhere.trouble = Trouble::bad_collider;
+  for (std::size_t k = 0; k < input.pins_end.size(); ++k) {
+    if (tutu::is_finite(input.pins_start[k]) && tutu::is_finite(input.pins_end[k])) continue;
+    nowhere.trouble = Trouble::bad_target;
+    nowhere.particle = garment_->pins[k].particle;
+    break;
+  }
+  nowhere.position = good_.positions[nowhere.particle];
+  return nowhere;
+}
+
+std::optional<Unfinished> GuardedSolver::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
   recovery_.reset();
   good_ = solver_->particles();
   if (!is_finite(input)) { // no solver and no collision query can make sense of it
-    Divergence nowhere;
-    nowhere.stretch = std::numeric_limits<double>::quiet_NaN();
-    if (!garment_->pins.empty()) nowhere.particle = garment_->pins.front().particle;
-    for (std::size_t k = 0; k < input.pins_end.size(); ++k)
-      if (!tutu::is_finite(input.pins_end[k])) nowhere.particle = garment_->pins[k].particle;
-    nowhere.position = good_.positions[nowhere.particle];
-    recovery_ = Recovery{nowhere, input.substeps};
-    return nowhere;
+    recovery_ = Recovery{nowhere(input), input.substeps};
+    return recovery_->divergence;
   }
-  auto divergence = attempt(input, query);
-  if (!divergence) {
+  const int refinement_before = refinement_;
+  const auto stopped = [&](const std::optional<Unfinished>& end) {
+    if (!end || divergence_of(end)) return false;
+    solver_->restore(good_);
+    recovery_.reset();
+    refinement_ = refinement_before;
+    return true;
+  };
+  auto end = attempt(input, query);
+  if (stopped(end)) return end;
+  if (!end) {
     stops_ = 0;
     if (refinement_ > 1 && ++calm_ >= k_calm_frames) {
       refinement_ /= 2;
@@ -112,12 +128,12 @@ std::optional<Divergence> GuardedSolver::step(const FrameInput& input, proxies::
     return std::nullopt;
   }
 
-  recovery_ = Recovery{*divergence, substeps_};
-  calm_ = 0;
-  const int refinement_before = refinement_;
+  recovery_ = Recovery{*divergence_of(end), substeps_};
+  Divergence& first = recovery_->divergence;
+  if (!first.position.allFinite()) first.position = good_.positions[first.particle];
   const int most_substeps = std::max(k_most_recovery_substeps, 2 * input.substeps);
   FrameInput again = input;
-  while (divergence && !recovery_->at_rest) {
+  while (end && !recovery_->at_rest) {
     ++recovery_->tries;
     if (refinement_ < (1 << k_recovery_tries) && 2 * refinement_ * input.substeps <= most_substeps) {
       refinement_ *= 2;
@@ -126,12 +142,15 @@ std::optional<Divergence> GuardedSolver::step(const FrameInput& input, proxies::
       recovery_->at_rest = true;
       jump(again);
     }
-    divergence = attempt(again, query);
+    end = attempt(again, query);
+    if (stopped(end)) return end;
   }
+  calm_ = 0;
   stops_ = recovery_->at_rest ? stops_ + 1 : 0;
   if (recovery_->at_rest) refinement_ = refinement_before; // it was not small steps that carried it
   recovery_->substeps = substeps_;
-  recovery_->carried = !divergence && stops_ < k_stops_in_a_row;
+  recovery_->carried = !end && stops_ < k_stops_in_a_row;
+  recovery_->worn_out = !end && !recovery_->carried;
   if (recovery_->carried) return std::nullopt;
   solver_->restore(good_);
   return recovery_->divergence;

@@ -11,18 +11,20 @@ namespace tutu::cloth {
 
 /// How a frame that diverged was carried after all, or that it was not.
 struct Recovery {
-  Divergence divergence;  ///< of the first try: the first bad constraint
+  Divergence divergence;  ///< of the first try
   int first_substeps = 0; ///< substeps a frame of that try; what divergence.substep counts in
   int tries = 0;          ///< that followed it
   int substeps = 0;       ///< a frame, of the last try
   bool at_rest = false;   ///< the last try took the frame for a jump: no velocities, edges drawn in
-  bool carried = false;   ///< the last try held
+  bool carried = false;   ///< the last try held, and the run goes on
+  bool worn_out = false;  ///< it held, and is the last of k_stops_in_a_row frames that only a jump carried
 };
 
 /// Moves free particles until no structural edge is longer than (1 + k_mended_stretch) of its rest length, in at most
 /// k_mending_passes passes of Gauss-Seidel, heavier ends giving way less. Colliders are not asked. Positions that are
 /// no numbers stay so.
-void draw_in_edges(const Garment& garment, std::span<Vec3> positions);
+/// Ends early, with a whole pass, when `input` says stop.
+void draw_in_edges(const Garment& garment, std::span<Vec3> positions, const FrameInput& input = {});
 
 /// A solver with a way back. step() keeps the state at the frame's start; when the solver diverges, that state comes
 /// back and the same frame is taken with twice the substeps, up to k_recovery_tries doublings or
@@ -32,7 +34,8 @@ void draw_in_edges(const Garment& garment, std::span<Vec3> positions);
 /// that is suddenly elsewhere are not cured by small steps. When no try holds, or k_stops_in_a_row frames in a row were
 /// carried by the last one only, step() returns the first divergence, and the state is that of the frame's start.
 ///
-/// Pins or colliders that are no numbers fail the frame at once.
+/// Pins or colliders that are no numbers fail the frame at once. A frame that is told to stop was not taken: the state
+/// is that of its start, and recovery() has nothing to tell.
 ///
 /// After a recovery the next frames begin with the substeps that carried it; every k_calm_frames good frames halve them
 /// until they are what is asked for. All of it depends on the run so far only: same input, same bits.
@@ -46,7 +49,7 @@ public:
 
   void reset(std::span<const Vec3> positions) override;
   void restore(const Particles& state) override;
-  std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) override;
+  std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return solver_->particles(); }
   const SolverTimes& times() const override { return times_; } ///< of all tries of the last frame
   const ContactCounts& contact_counts() const override { return solver_->contact_counts(); }
@@ -59,8 +62,9 @@ public:
   int substeps() const { return substeps_; }
 
 private:
-  std::optional<Divergence> attempt(FrameInput input, proxies::CollisionQuery& query);
+  std::optional<Unfinished> attempt(FrameInput input, proxies::CollisionQuery& query);
   void jump(FrameInput& input);
+  Divergence nowhere(const FrameInput& input) const;
   void forget();
 
   std::unique_ptr<Solver> solver_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloth/garment/garment.h"
+#include "cloth/state/divergence.h"
 #include "cloth/state/frame.h"
 #include "cloth/state/particles.h"
 #include "cloth/state/solver_options.h"
@@ -10,8 +11,17 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <variant>
 
 namespace tutu::cloth {
+
+/// Why a frame is not whole.
+using Unfinished = std::variant<Divergence, Stopped>;
+
+/// The divergence of a step; null when there was none.
+inline const Divergence* divergence_of(const std::optional<Unfinished>& end) {
+  return end ? std::get_if<Divergence>(&*end) : nullptr;
+}
 
 /// One garment in motion. The garment must outlive it; its memory is allocated once.
 class Solver {
@@ -24,8 +34,10 @@ public:
   /// In motion as in `state`, which particles() gave earlier: how a bad frame is taken back.
   virtual void restore(const Particles& state) = 0;
 
-  /// One frame in `input.substeps` equal substeps. On divergence the state is that of the substep in which it happened.
-  virtual std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) = 0;
+  /// One frame in `input.substeps` equal substeps. Nothing when the frame is whole. On divergence the state is that in
+  /// which the trouble was found, within the substep in which it happened; a frame that was stopped ends with a whole
+  /// substep.
+  virtual std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) = 0;
 
   virtual const Particles& particles() const = 0;
   virtual const SolverTimes& times() const = 0; ///< of the last frame

@@ -3,11 +3,13 @@
 #include "cloth/contact/contact_search.h"
 #include "cloth/contact/self_collision.h"
 #include "cloth/detail/solver_parts.h"
+#include "cloth/garment/elements.h"
 #include "cloth/state/tolerances.h"
 #include "cloth/woven/contacts.h"
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace tutu::cloth {
 namespace {
@@ -42,7 +44,7 @@ public:
     if (self_) self_->forget();
   }
 
-  std::optional<Divergence> step(const FrameInput& input, proxies::CollisionQuery& query) override;
+  std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
 
   /// Put together when asked for.
   const Particles& particles() const override {
@@ -63,7 +65,16 @@ private:
   void close_seams();
   bool part_layers(double h);
   void ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s);
-  Divergence diverged(int substep);
+  /// A substep: its number, its end in (0, 1] of the frame, and what the kernel is told of it.
+  struct Substep {
+    int number = 0;
+    double s = 0.0, h = 0.0; ///< h in s
+    const WovenStep<T>& step;
+  };
+  Divergence diverged(const FrameInput& input, const Substep& at, std::optional<double> speed = std::nullopt);
+  Divergence diverged_in_constraints(const FrameInput& input, const Substep& at);
+  Divergence diverged_at_end(const FrameInput& input, const Substep& at, bool predicted);
+  void end_at(const FrameInput& input, double s);
 
   const Garment* garment_;
   WovenKernel<T> kernel_;
@@ -119,12 +130,53 @@ template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const 
                            });
 }
 
-template <class T> Divergence Xpbd<T>::diverged(int substep) {
+/// From here on particles() shows the sheet, with pins to the last bit.
+template <class T> void Xpbd<T>::end_at(const FrameInput& input, double s) {
+  pins_.assign(input.pins_end.begin(), input.pins_end.end());
+  for (std::size_t k = 0; s < 1.0 && k < pins_.size(); ++k)
+    pins_[k] = (1.0 - s) * input.pins_start[k] + s * input.pins_end[k];
   in_step_ = false;
-  return find_divergence(*garment_, substep, particles().positions);
 }
 
-template <class T> std::optional<Divergence> Xpbd<T>::step(const FrameInput& input, proxies::CollisionQuery& query) {
+/// What is wrong with the sheet as it is. `speed`: of what is too fast, where it no longer shows.
+template <class T>
+Divergence Xpbd<T>::diverged(const FrameInput& input, const Substep& at, std::optional<double> speed) {
+  end_at(input, at.s);
+  std::vector<Vec3> starts(garment_->rest_positions.size());
+  sheet_.get_starts(starts);
+  const std::vector<Tether> tethers = sheet_.view().tethers.length ? build_tethers(*garment_) : std::vector<Tether>{};
+  const double rounding = std::is_same_v<T, float> ? 1e-4 : 1e-9; // pins are shown to the last bit, and solved in T
+  const Moment now{*garment_, at.number, at.h, particles(), speed ? std::span<const Vec3>{} : starts};
+  return find_trouble(now, {true, false, rounding, tethers}, speed);
+}
+
+/// The constraints change what they measure: they are solved once more, from where they began, to where they met the
+/// first broken edge.
+template <class T> Divergence Xpbd<T>::diverged_in_constraints(const FrameInput& input, const Substep& at) {
+  kernel_.predict_again(sheet_.view(), at.step);
+  follow_pins(input, at.s, at.h);
+  close_seams();
+  sheet_.get_positions(particles_.positions);
+  const bool all_numbers = std::all_of(particles_.positions.begin(), particles_.positions.end(),
+                                       [](const Vec3& p) { return p.allFinite(); });
+  if (all_numbers) { // else what is none would only spread
+    std::vector<T> room(static_cast<std::size_t>(6 * sheet_.view().block_stride));
+    kernel_.constraints_to_break(sheet_.view(), at.step, room.data());
+  }
+  return diverged(input, at);
+}
+
+/// Contacts sent a particle away, which was noticed when velocities were found and perhaps the next step predicted:
+/// where the substep ended is then what that one started from, and where it began is lost.
+template <class T> Divergence Xpbd<T>::diverged_at_end(const FrameInput& input, const Substep& at, bool predicted) {
+  if (!predicted) return diverged(input, at);
+  sheet_.take_back();
+  for (std::size_t k = 0; k < garment_->pins.size(); ++k)
+    sheet_.set_velocity(garment_->pins[k].particle, (input.pins_end[k] - input.pins_start[k]) / input.seconds);
+  return diverged(input, at, contacts_.fastest());
+}
+
+template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
   auto time = Clock::now();
   asks_each_ = query.name() != proxies::k_backend_names[static_cast<std::size_t>(proxies::Backend::hybrid)];
@@ -132,6 +184,7 @@ template <class T> std::optional<Divergence> Xpbd<T>::step(const FrameInput& inp
   if (asks_each_) search_.begin_frame(query, input.colliders, particles(), input.seconds);
   else contacts_.begin_frame(query, input, sheet_);
   time = lap(time, times_.broad);
+  if (input.is_stopped()) return Stopped{0};
 
   const WovenSheetView<T>& view = sheet_.view();
   const double h = input.seconds / input.substeps;
@@ -144,27 +197,31 @@ template <class T> std::optional<Divergence> Xpbd<T>::step(const FrameInput& inp
   kernel_.predict(view, step);
   for (int substep = 0; substep < input.substeps; ++substep) {
     const double s = static_cast<double>(substep + 1) / input.substeps;
+    const Substep at{substep, s, h, step};
     follow_pins(input, s, h);
     close_seams(); // both sides start the threads together, so that neither is torn off
     const bool whole = kernel_.constraints(view, step);
     close_seams();
     time = lap(time, times_.cloth);
-    if (!whole || (self_ && !part_layers(h))) return diverged(substep);
+    if (!whole) return diverged_in_constraints(input, at);
+    if (self_ && !part_layers(h)) return diverged(input, at);
     if (asks_each_) {
       sheet_.get_positions(particles_.positions);
-      if (!is_in_world(particles_)) return diverged(substep);
+      if (!is_in_world(particles_)) return diverged(input, at);
       ask_each(query, input, s);
     } else if (!contacts_.resolve(query, kernel_, sheet_, s, h)) {
-      return diverged(substep);
+      return diverged(input, at);
     }
     time = lap(time, times_.contact);
     // The last substep's velocities are the frame's; those before are used up by the next prediction at once.
-    const bool is_last = substep + 1 == input.substeps;
-    if (!contacts_.finish(is_last ? kernel_.finish : kernel_.finish_and_predict, view, step)) return diverged(substep);
+    const bool is_end = substep + 1 == input.substeps, is_last = is_end || input.is_stopped();
+    if (!contacts_.finish(is_last ? kernel_.finish : kernel_.finish_and_predict, view, step))
+      return diverged_at_end(input, at, !is_last);
     time = lap(time, times_.cloth);
+    if (!is_last) continue;
+    end_at(input, s);
+    if (!is_end) return Stopped{substep + 1};
   }
-  pins_.assign(input.pins_end.begin(), input.pins_end.end());
-  in_step_ = false;
   return std::nullopt;
 }
 

@@ -4,6 +4,7 @@
 #include "cloth/state/tolerances.h"
 
 #include <cmath>
+#include <limits>
 
 namespace tutu::cloth {
 
@@ -37,33 +38,116 @@ void close_seams(const Garment& garment, std::span<const std::uint8_t> pinned, P
   }
 }
 
-Divergence find_divergence(const Garment& garment, int substep, std::span<const Vec3> positions) {
-  std::vector<Vec3> forces(positions.size(), Vec3::Zero());
-  const std::optional<int> bad = add_spring_forces(garment, positions, forces);
-  Divergence divergence = describe_divergence(garment, bad.value_or(0), substep, positions, forces);
-  for (std::size_t i = 0; !bad && i < positions.size(); ++i) {
-    if (is_in_world(positions[i])) continue;
-    divergence.particle = static_cast<int>(i);
-    divergence.position = positions[i];
-    break;
+namespace {
+
+/// A divergence at a particle, with what brought it about.
+Divergence trouble_at(const Moment& moment, Trouble trouble, int particle) {
+  const Garment& garment = moment.garment;
+  const Particles& now = moment.particles;
+  Divergence divergence;
+  divergence.trouble = trouble;
+  divergence.substep = moment.substep;
+  divergence.particle = particle;
+  divergence.position = now.positions[particle];
+  if (!divergence.position.allFinite() && !moment.starts.empty()) divergence.position = moment.starts[particle];
+  divergence.speed = now.velocities[particle].norm();
+
+  double nearest = std::numeric_limits<double>::infinity(); // m2, at rest
+  for (const Pin& pin : garment.pins) {
+    const double squared = (garment.rest_positions[pin.particle] - garment.rest_positions[particle]).squaredNorm();
+    if (squared >= nearest) continue;
+    nearest = squared;
+    // A pin has the velocity that took it to where it is.
+    divergence.held = Divergence::Held{pin.particle, now.velocities[pin.particle].norm() * moment.h};
   }
+  std::vector<Vec3> forces(now.positions.size(), Vec3::Zero());
+  add_spring_forces(garment, now.positions, forces);
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    if (const double force = forces[i].norm(); std::isfinite(force) && force > divergence.strongest_force) {
+      divergence.strongest_force = force;
+      divergence.strongest_particle = static_cast<int>(i);
+    }
   return divergence;
 }
 
-Divergence describe_divergence(const Garment& garment, int bad_spring, int substep, std::span<const Vec3> positions,
-                               std::span<const Vec3> forces) {
-  const Spring& spring = garment.springs[bad_spring];
-  Divergence divergence;
-  divergence.substep = substep;
-  divergence.particle = spring.j;
-  divergence.position = positions[spring.j];
-  divergence.stretch = (positions[spring.j] - positions[spring.i]).norm() / spring.rest_length - 1.0;
-  for (std::size_t i = 0; i < forces.size(); ++i)
-    if (const double force = forces[i].norm(); !(force <= divergence.strongest_force)) {
-      divergence.strongest_force = force;
-      divergence.strongest_particle = static_cast<int>(i);
-      if (std::isnan(force)) break;
+/// The particle with the largest of these values; none where none is above 0.
+template <class Value> std::optional<int> worst_particle(const Moment& moment, const Value& value) {
+  std::optional<int> worst;
+  double most = 0.0;
+  for (int i = 0; i < moment.particles.count(); ++i)
+    if (const double v = value(i); v > most) {
+      most = v;
+      worst = i;
     }
+  return worst;
+}
+
+/// How far beyond the world's radius a vector reaches along an axis; 0 within.
+double beyond_world(const Vec3& v) { return is_in_world(v) ? 0.0 : v.cwiseAbs().maxCoeff(); }
+
+} // namespace
+
+std::optional<Divergence> find_lost(const Moment& moment) {
+  const auto &x = moment.particles.positions, &v = moment.particles.velocities;
+  const auto began = [&](int i) { return moment.starts.empty() ? Vec3(Vec3::Zero()) : moment.starts[i]; };
+  const auto began_as_none = [&](int i) { return v[i].allFinite() && began(i).allFinite() ? 0.0 : 1.0; };
+  if (const auto i = worst_particle(moment, began_as_none)) return trouble_at(moment, Trouble::no_number, *i);
+  if (const auto i = worst_particle(moment, [&](int k) { return x[k].allFinite() ? 0.0 : 1.0; }))
+    return trouble_at(moment, Trouble::no_number, *i);
+  const auto out_since_start = [&](int i) { return is_in_world(began(i)) ? 0.0 : beyond_world(x[i]); };
+  if (const auto i = worst_particle(moment, out_since_start)) return trouble_at(moment, Trouble::out_of_world, *i);
+  if (const auto i = worst_particle(moment, [&](int k) { return beyond_world(x[k]); }))
+    return trouble_at(moment, Trouble::out_of_world, *i);
+  if (const auto i = worst_particle(moment, [&](int k) { return beyond_world(v[k]); }))
+    return trouble_at(moment, Trouble::too_fast, *i);
+  return std::nullopt;
+}
+
+std::optional<Divergence> find_overlong(const Moment& moment, const WatchedEdges& watched) {
+  const Garment& garment = moment.garment;
+  const auto &x = moment.particles.positions, &v = moment.particles.velocities;
+  const std::vector<std::uint8_t> pinned = pinned_flags(garment);
+  struct Way {
+    Trouble trouble = Trouble::long_edge;
+    int from = -1, to = -1;
+    double length = 0.0, longest = 0.0; ///< m
+  } worst;
+  double most = (1.0 + k_diverged_stretch) * (1.0 - watched.rounding);
+  const auto measure = [&](Trouble trouble, int from, int to, double longest) {
+    const double length = (x[to] - x[from]).norm();
+    if (!(length > most * longest)) return;
+    most = length / longest;
+    worst = {trouble, from, to, length, longest};
+  };
+  for (const Spring& spring : garment.springs) {
+    if (spring.kind == SpringKind::bend || (spring.kind == SpringKind::shear && !watched.shear)) continue;
+    if (!watched.between_pins && pinned[spring.i] && pinned[spring.j]) continue;
+    measure(Trouble::long_edge, spring.i, spring.j, spring.rest_length);
+  }
+  for (const Tether& tether : watched.tethers)
+    if (tether.length > 0.0) // else a seam holds it
+      measure(Trouble::long_tether, tether.particle, tether.anchor, longest_of(tether, garment.fabric));
+  if (worst.from < 0) return std::nullopt;
+  if (worst.trouble == Trouble::long_edge && v[worst.to].norm() >= v[worst.from].norm())
+    std::swap(worst.from, worst.to);
+  Divergence divergence = trouble_at(moment, worst.trouble, worst.from);
+  divergence.other = worst.to;
+  divergence.length = worst.length;
+  divergence.rest_length = worst.longest;
+  return divergence;
+}
+
+Divergence find_trouble(const Moment& moment, const WatchedEdges& watched, std::optional<double> speed) {
+  if (const auto lost = find_lost(moment)) return *lost;
+  if (const auto overlong = find_overlong(moment, watched)) return *overlong;
+  const auto way_of = [&](int i) {
+    const Vec3& x = moment.particles.positions[i];
+    return moment.starts.empty() ? x.norm() : (x - moment.starts[i]).norm();
+  };
+  const int farthest = worst_particle(moment, way_of).value_or(0);
+  Divergence divergence = trouble_at(moment, Trouble::too_fast, farthest);
+  if (speed) divergence.speed = *speed;
+  else if (!moment.starts.empty()) divergence.speed = way_of(farthest) / moment.h;
   return divergence;
 }
 

@@ -1,6 +1,7 @@
 // What the solvers share within a substep. Private to the folder.
 #pragma once
 
+#include "cloth/garment/elements.h"
 #include "cloth/solver.h"
 
 #include <chrono>
@@ -22,12 +23,34 @@ double share_of_second(const Garment& garment, std::span<const std::uint8_t> pin
 /// Both sides of a seam meet at their common centre of mass with their common momentum; a pinned side leads.
 void close_seams(const Garment& garment, std::span<const std::uint8_t> pinned, Particles& particles);
 
-/// Says where a run broke: at the first structural spring whose length is not within (1 + k_diverged_stretch) of its
-/// rest length, or at any other particle that is out of the world.
-Divergence find_divergence(const Garment& garment, int substep, std::span<const Vec3> positions);
+/// A substep in which something is wrong, for finding out what.
+struct Moment {
+  const Garment& garment;
+  int substep = 0;
+  double h = 0.0;                    ///< s
+  const Particles& particles;        ///< as they were when it was noticed
+  std::span<const Vec3> starts = {}; ///< where they were when the substep began; empty where that is not known
+};
 
-/// The same for a known spring. `forces`: those of the springs at `positions`, N.
-Divergence describe_divergence(const Garment& garment, int bad_spring, int substep, std::span<const Vec3> positions,
-                               std::span<const Vec3> forces);
+/// What is_in_world() objects to: the first particle whose place or velocity is no number, else the one that is the
+/// farthest out of the world, else the fastest beyond it. Those that were so when the substep began come before those
+/// it has spread to since.
+std::optional<Divergence> find_lost(const Moment& moment);
+
+/// Where a solver looks for what is too long, besides structural springs.
+struct WatchedEdges {
+  bool shear = false;       ///< diagonals of cells
+  bool between_pins = true; ///< edges without a free end
+  double rounding = 0.0;    ///< share of a length that the solver may measure wrong
+  std::span<const Tether> tethers = {};
+};
+/// Of the edges, and of the tethers of free particles, that are longer than (1 + k_diverged_stretch) of what they may
+/// be the longest, for what it may be.
+std::optional<Divergence> find_overlong(const Moment& moment, const WatchedEdges& watched);
+
+/// Whichever there is. Where there is neither, what the solver noticed is a speed: of the particle that went the
+/// farthest from where the substep began (without `starts`: that is the farthest from the origin). `speed`: m/s where
+/// the solver knows it.
+Divergence find_trouble(const Moment& moment, const WatchedEdges& watched, std::optional<double> speed = std::nullopt);
 
 } // namespace tutu::cloth

@@ -1,6 +1,7 @@
 #include "cloth/garment/garment.h"
 
 #include "cloth/garment/detail/garment_mesh.h"
+#include "cloth/garment/garment_memory.h"
 #include "rig/error.h"
 
 #include <algorithm>
@@ -243,6 +244,7 @@ void build_shape(const MeshShape& mesh, const GarmentDescription& description, G
 } // namespace
 
 Garment build_garment(const GarmentDescription& description) {
+  check_garment_memory(description);
   Garment garment;
   garment.name = description.name;
   garment.fabric = description.fabric;

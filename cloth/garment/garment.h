@@ -144,7 +144,8 @@ struct Garment {
 };
 
 /// Throws InputError when the description cannot be cloth: fewer than 2 x 2 particles, cells without area, an
-/// attachment beyond the rows or without a particle, a particle pinned twice.
+/// attachment beyond the rows or without a particle, a particle pinned twice; and where it would take more memory than
+/// is allowed (garment_memory.h).
 Garment build_garment(const GarmentDescription& description);
 
 /// One entry a particle: 1 where it is pinned.

@@ -4,6 +4,7 @@
 #include "proxies/motion/collider_set.h"
 #include "rig/math.h"
 
+#include <atomic>
 #include <cstdint>
 #include <span>
 
@@ -19,16 +20,11 @@ struct FrameInput {
   int substeps = 5;                 ///< >= 1
   Vec3 gravity = {0.0, -9.81, 0.0}; ///< m/s2
   double extra_drag = 0.0;          ///< 1/s on top of the fabric's: settles a drape
-};
+  /// Where there is one, solvers look at it between substeps, and once it is true end the frame there (Stopped). Not
+  /// owned; any thread may set it.
+  const std::atomic<bool>* stop = nullptr;
 
-/// A run that cannot be continued: the first bad edge, and the strongest force at that moment.
-struct Divergence {
-  int substep = 0;  ///< of the frame, from 0
-  int particle = 0; ///< an end of the bad edge
-  Vec3 position = Vec3::Zero();
-  double stretch = 0.0; ///< length / rest length - 1 of the bad edge; NaN when its length is
-  int strongest_particle = 0;
-  double strongest_force = 0.0; ///< N
+  bool is_stopped() const { return stop && stop->load(std::memory_order_relaxed); }
 };
 
 /// Milliseconds of one frame.

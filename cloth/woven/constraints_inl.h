@@ -16,9 +16,27 @@ namespace tutu::cloth::HWY_NAMESPACE {
 
 template <class T> struct Limits {
   Wide<T> per_h2;
-  Wide<T> broken; ///< length over rest length at which the run has diverged
-  Wide<T> bad;    ///< not 0 in lanes that have seen such an edge
+  Wide<T> broken;    ///< length over rest length at which the run has diverged
+  Wide<T> bad;       ///< not 0 in lanes that have seen such an edge
+  T* room = nullptr; ///< for the positions of two blocks: whole() is to keep them
 };
+
+/// Does a part of the solve in which no edge moves what another is measured by: some of the edges of `block`, and those
+/// to the next. With room to keep positions in, false when the part met a broken edge, and the positions are those that
+/// it was met in.
+template <class T, class Part>
+HWY_INLINE bool whole(const WovenSheetView<T>& sheet, int block, Limits<T>& limits, const Part& part) {
+  if (HWY_LIKELY(!limits.room)) {
+    part();
+    return true;
+  }
+  const std::ptrdiff_t count = 2 * sheet.block_stride, from = place(sheet, block, 0);
+  for (int axis = 0; axis < 3; ++axis) std::copy_n(sheet.x[axis] + from, count, limits.room + axis * count);
+  part();
+  if (hn::AllFalse(Tag<T>(), limits.bad > hn::Zero(Tag<T>()))) return true;
+  for (int axis = 0; axis < 3; ++axis) std::copy_n(limits.room + axis * count, count, sheet.x[axis] + from);
+  return false;
+}
 
 /// Edges without a free end cannot break: they may lie in lanes that hold no cloth.
 template <class T> HWY_INLINE void note_broken(Wide<T> length, Wide<T> rest, Wide<T> weights, Limits<T>& limits) {
@@ -176,20 +194,20 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
   }
 }
 
-/// Gauss-Seidel over the warp edges: even ones, then odd ones.
-template <class T> void sweep_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, Limits<T>& limits) {
-  for (int parity = 0; parity < 2; ++parity)
-    for (int row = parity; row + 1 < sheet.rows; row += 2)
-      for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
-        Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
-        solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
-                              load(row_of(sheet.inverse_mass, block, row + 1) + lane),
-                              load(row_of(sheet.warp.length, block, row) + lane),
-                              load(row_of(sheet.warp.compliance, block, row) + lane),
-                              multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
-        store(a, sheet.x, at);
-        store(b, sheet.x, at + k_lanes);
-      });
+/// Gauss-Seidel over the warp edges, those that begin at even rows or those at odd ones.
+template <class T>
+void sweep_threads(const WovenSheetView<T>& sheet, int block, int parity, T* multipliers, Limits<T>& limits) {
+  for (int row = parity; row + 1 < sheet.rows; row += 2)
+    for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
+      Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
+      solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
+                            load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+                            load(row_of(sheet.warp.length, block, row) + lane),
+                            load(row_of(sheet.warp.compliance, block, row) + lane),
+                            multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
+      store(a, sheet.x, at);
+      store(b, sheet.x, at + k_lanes);
+    });
 }
 
 // ---- tethers
@@ -217,19 +235,34 @@ template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, 
 
 // ---- all constraints
 
-/// Diagonals, where asked for, and weft edges between a block and the next.
+/// Diagonals, where asked for, and weft edges between a block and the next. True as whole() is.
 template <bool k_repeats, class T>
-void solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bool first_pass, Limits<T>& limits) {
+bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bool first_pass, Limits<T>& limits) {
   const bool is_last = block + 1 == sheet.blocks;
   if (is_last) fetch_halo(sheet, sheet.x, 0);
-  if (with_shear) {
-    solve_between<k_repeats, T>(sheet, sheet.falling, sheet.multipliers[2], block, 0, 1, sheet.rows - 1, first_pass,
-                                limits);
-    solve_between<k_repeats, T>(sheet, sheet.rising, sheet.multipliers[3], block, 1, 0, sheet.rows - 1, first_pass,
-                                limits);
-  }
-  solve_between<k_repeats, T>(sheet, sheet.weft, sheet.multipliers[1], block, 0, 0, sheet.rows, first_pass, limits);
+  const auto between = [&](const WovenSprings<T>& springs, T* multipliers, int down_a, int down_b, int rows) HWY_ATTR {
+    return whole(sheet, block, limits, [&]() HWY_ATTR {
+      solve_between<k_repeats, T>(sheet, springs, multipliers, block, down_a, down_b, rows, first_pass, limits);
+    });
+  };
+  const bool is_whole = (!with_shear || (between(sheet.falling, sheet.multipliers[2], 0, 1, sheet.rows - 1) &&
+                                         between(sheet.rising, sheet.multipliers[3], 1, 0, sheet.rows - 1))) &&
+                        between(sheet.weft, sheet.multipliers[1], 0, 0, sheet.rows);
   if (is_last) return_halo(sheet, sheet.x, 0);
+  return is_whole;
+}
+
+/// Newton steps over the whole threads of a block, then sweeps. True as whole() is.
+template <class T>
+bool solve_down(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int block, T* multipliers, bool first_pass,
+                Limits<T>& limits) {
+  bool is_whole = true;
+  for (int k = 0; k < step.newton_steps && is_whole; ++k)
+    is_whole = whole(sheet, block, limits,
+                     [&]() HWY_ATTR { solve_threads(sheet, block, multipliers, first_pass && k == 0, limits); });
+  for (int k = 0; k < 2 * step.closing_sweeps && is_whole; ++k)
+    is_whole = whole(sheet, block, limits, [&]() HWY_ATTR { sweep_threads(sheet, block, k % 2, multipliers, limits); });
+  return is_whole;
 }
 
 template <class T> void bend_all(const WovenSheetView<T>& sheet, Wide<T> per_h2) {
@@ -244,33 +277,38 @@ template <class T> void bend_all(const WovenSheetView<T>& sheet, Wide<T> per_h2)
   for (int block = 0; block < sheet.blocks; ++block) bend_warp(sheet, block, per_h2);
 }
 
-template <bool k_repeats, class T> bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
+template <bool k_repeats, class T>
+bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
   const Tag<T> tag;
-  Limits<T> limits = {set(T(1) / (step.h * step.h)), set(T(1.0 + k_diverged_stretch)), hn::Zero(tag)};
+  Limits<T> limits = {set(T(1) / (step.h * step.h)), set(T(1.0 + k_diverged_stretch)), hn::Zero(tag), room};
   if (sheet.has_bend) bend_all(sheet, limits.per_h2);
   if (sheet.tethers.length)
-    for (int block = 0; block < sheet.blocks; ++block) pull_tethers(sheet, block, limits);
+    for (int block = 0; block < sheet.blocks; ++block)
+      if (!whole(sheet, block, limits, [&]() HWY_ATTR { pull_tethers(sheet, block, limits); })) return false;
   for (int pass = 0; pass < step.passes; ++pass) {
     const bool first = pass == 0;
     for (int block = 0; block < sheet.blocks; ++block)
-      solve_across<k_repeats>(sheet, block, sheet.has_shear, first, limits);
+      if (!solve_across<k_repeats>(sheet, block, sheet.has_shear, first, limits)) return false;
     for (int block = 0; block < sheet.blocks; ++block) {
       // With one pass a thread's multipliers are needed no longer than its own solve.
       T* multipliers = sheet.multipliers[0] + (k_repeats ? place(sheet, block, 0) : 0);
-      for (int k = 0; k < step.newton_steps; ++k) solve_threads(sheet, block, multipliers, first && k == 0, limits);
-      for (int k = 0; k < step.closing_sweeps; ++k) sweep_threads(sheet, block, multipliers, limits);
+      if (!solve_down(sheet, step, block, multipliers, first, limits)) return false;
     }
     // Where few threads are held the weft carries the load: once more, the other way round.
     if constexpr (k_repeats)
       if (sheet.tethers.length)
-        for (int block = sheet.blocks - 1; block >= 0; --block) solve_across<true>(sheet, block, false, false, limits);
+        for (int block = sheet.blocks - 1; block >= 0; --block)
+          if (!solve_across<true>(sheet, block, false, false, limits)) return false;
   }
   return hn::AllFalse(tag, limits.bad > hn::Zero(tag));
 }
 
-template <class T> bool constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
+template <class T> bool constraints_to_break(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
   const bool repeats = step.passes > 1 || sheet.tethers.length;
-  return repeats ? all_constraints<true>(sheet, step) : all_constraints<false>(sheet, step);
+  return repeats ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
+}
+template <class T> bool constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
+  return constraints_to_break<T>(sheet, step, nullptr);
 }
 
 } // namespace tutu::cloth::HWY_NAMESPACE

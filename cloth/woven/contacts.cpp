@@ -38,19 +38,27 @@ WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& opt
       tile.last = std::min(first + k_tile_rows, view.rows);
       tiles_.push_back(tile);
     }
+  const Weave& weave = sheet.weave();
+  struct Row {
+    double reach = 0.0, weft = 0.0, warp = 0.0, diagonal = 0.0;
+  };
+  std::vector<Row> rows(view.rows); // of the cells below each
   for (const Spring& spring : garment.springs) {
     if (spring.kind == SpringKind::bend) continue;
     // A cell lies within its longest diagonal of each corner, and cloth stretches.
-    const Weave& weave = sheet.weave();
-    const int row = std::min(weave.row(spring.i), weave.row(spring.j));
-    for (Tile& tile : tiles_) {
-      if (row < tile.first - 1 || row >= tile.last) continue;
-      tile.reach = std::max(tile.reach, k_cell_stretch * spring.rest_length);
-      const bool down = weave.row(spring.i) != weave.row(spring.j);
-      double& edge = spring.kind == SpringKind::shear ? tile.diagonal : down ? tile.warp : tile.weft;
-      edge = std::max(edge, spring.rest_length);
-    }
+    Row& row = rows[std::min(weave.row(spring.i), weave.row(spring.j))];
+    row.reach = std::max(row.reach, k_cell_stretch * spring.rest_length);
+    const bool down = weave.row(spring.i) != weave.row(spring.j);
+    double& edge = spring.kind == SpringKind::shear ? row.diagonal : down ? row.warp : row.weft;
+    edge = std::max(edge, spring.rest_length);
   }
+  for (Tile& tile : tiles_)
+    for (int k = std::max(tile.first - 1, 0); k < tile.last; ++k) {
+      tile.reach = std::max(tile.reach, rows[k].reach);
+      tile.weft = std::max(tile.weft, rows[k].weft);
+      tile.warp = std::max(tile.warp, rows[k].warp);
+      tile.diagonal = std::max(tile.diagonal, rows[k].diagonal);
+    }
   boxes_.resize(tiles_.size());
 }
 
@@ -255,6 +263,12 @@ bool WovenContacts<T>::finish(WovenFinish<T> kernel, const WovenSheetView<T>& vi
     tile.speed = way / static_cast<double>(step.h);
   }
   return all_numbers;
+}
+
+template <class T> double WovenContacts<T>::fastest() const {
+  double fastest = 0.0;
+  for (const Tile& tile : tiles_) fastest = std::max(fastest, tile.speed);
+  return fastest;
 }
 
 template class WovenContacts<float>;

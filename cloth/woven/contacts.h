@@ -36,6 +36,7 @@ public:
 
   /// After resolve: velocities by `kernel`, and how far each tile went. Returns false like resolve.
   bool finish(WovenFinish<T> kernel, const WovenSheetView<T>& view, const WovenStep<T>& step);
+  double fastest() const; ///< m/s, of any particle as of the last finish(); what is no number does not count
 
   const ContactCounts& counts() const { return counts_; }
   BroadPhaseView broad_phase() const { return {boxes_, candidates_.begin, candidates_.colliders}; }

@@ -19,9 +19,11 @@ template <class T> void fetch(const WovenSheetView<T>& sheet) {
 template <class T> void give_back(const WovenSheetView<T>& sheet) { return_halo(sheet, sheet.x, 0); }
 
 template <class T> WovenKernel<T> kernel() {
-  return {hwy::TargetName(HWY_TARGET), &predict<T>,      &constraints<T>,   &farthest<T>,
-          &finish<false, T>,           &finish<true, T>, &bounds<T>,        &contact_capsule<T>,
-          &contact_plane<T>,           &fetch<T>,        &contact_cells<T>, &give_back<T>};
+  return {hwy::TargetName(HWY_TARGET), &predict<T>,       &constraints<T>,
+          &constraints_to_break<T>,    &predict_again<T>, &farthest<T>,
+          &finish<false, T>,           &finish<true, T>,  &bounds<T>,
+          &contact_capsule<T>,         &contact_plane<T>, &fetch<T>,
+          &contact_cells<T>,           &give_back<T>};
 }
 
 WovenKernel<float> single_kernel() { return kernel<float>(); }

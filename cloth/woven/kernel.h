@@ -121,6 +121,11 @@ template <class T> struct WovenKernel {
   /// Bending, tethers, then all passes over the springs. False when an edge or a taut tether was longer than (1 +
   /// k_diverged_stretch) of its length, or an edge no number.
   bool (*constraints)(Sheet, Step);
+  /// The same once more for a substep in which it was false, from where constraints() began: ends, false, with the
+  /// positions that the first broken edge was met in. `room` is for `6 * block_stride` numbers.
+  bool (*constraints_to_break)(Sheet, Step, T* room);
+  /// Undoes what was done to predict()'s positions since, from was and v; pinned particles are where they were.
+  void (*predict_again)(Sheet, Step);
   /// Largest squared way since the substep's start, m2; not a number when any is not.
   T (*farthest)(Sheet, int block, int first, int last);
   /// v takes what constraints and contacts did to the prediction. Returns the largest squared way since the substep's

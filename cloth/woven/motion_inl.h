@@ -59,6 +59,18 @@ template <class T> void predict(const WovenSheetView<T>& sheet, const WovenStep<
     });
 }
 
+template <class T> void predict_again(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
+  const Wide<T> h = set(step.h);
+  for (int block = 0; block < sheet.blocks; ++block)
+    for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+      const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(Tag<T>());
+      const Wide3<T> was = load(sheet.was, at), x = plus_times<T>(was, h, load(sheet.v, at));
+      store({hn::IfThenElse(is_free, x.x, was.x), hn::IfThenElse(is_free, x.y, was.y),
+             hn::IfThenElse(is_free, x.z, was.z)},
+            sheet.x, at);
+    });
+}
+
 template <bool k_predicts, class T>
 T finish(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int block, int first, int last) {
   const Wide<T> h = set(step.h), per_h = set(T(1) / step.h), most = set(step.fastest * step.fastest);

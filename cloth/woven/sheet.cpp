@@ -242,6 +242,15 @@ template <class T> void WovenSheet<T>::pin_to(int particle, const Vec3& position
     view_.v[axis][element] = (view_.x[axis][element] - view_.was[axis][element]) / static_cast<T>(h);
 }
 
+template <class T> void WovenSheet<T>::set_velocity(int particle, const Vec3& velocity) {
+  for (int axis = 0; axis < 3; ++axis) view_.v[axis][elements_[particle]] = static_cast<T>(velocity[axis]);
+}
+
+template <class T> void WovenSheet<T>::take_back() {
+  for (int axis = 0; axis < 3; ++axis)
+    std::copy_n(view_.was[axis], static_cast<std::size_t>(view_.blocks) * view_.block_stride, view_.x[axis]);
+}
+
 template <class T> void WovenSheet<T>::join(int first, int second, T share_of_second) {
   const std::ptrdiff_t a = elements_[first], b = elements_[second];
   for (T* x : view_.x) x[a] = x[b] = (T(1) - share_of_second) * x[a] + share_of_second * x[b];
@@ -254,7 +263,7 @@ template <class T> void WovenSheet<T>::set(std::span<const Vec3> positions, std:
   if (middle.allFinite()) origin_ = middle.array().round();
   for (int i = 0; i < static_cast<int>(positions.size()); ++i) {
     move_to(i, positions[i]);
-    for (int axis = 0; axis < 3; ++axis) view_.v[axis][elements_[i]] = static_cast<T>(velocities[i][axis]);
+    set_velocity(i, velocities[i]);
   }
   follow();
   for (int axis = 0; axis < 3; ++axis)

@@ -65,6 +65,9 @@ public:
   void move_to(int particle, const Vec3& position) const;
   /// As a pinned particle: at `position` with the velocity that takes it there in h.
   void pin_to(int particle, const Vec3& position, double h);
+  void set_velocity(int particle, const Vec3& velocity);
+  /// Back to the positions at the substep's start.
+  void take_back();
   /// Both at one point between them: the first's place at a share of 0, the second's at 1.
   void join(int first, int second, T share_of_second);
 

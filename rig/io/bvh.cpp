@@ -3,6 +3,7 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 #include "rig/io/json_file.h"
+#include "rig/io/memory_limit.h"
 
 #include <algorithm>
 #include <charconv>
@@ -180,6 +181,12 @@ Mocap read_bvh(const std::filesystem::path& file, const BvhOptions& options) {
   if (!(step > 0.0)) throw words.error(std::to_string(step) + " s a frame", "a time above 0");
   if (options.rest_frame && !(*options.rest_frame >= 0 && *options.rest_frame < frames))
     throw words.error(std::to_string(frames) + " frames", "the rest frame " + std::to_string(*options.rest_frame));
+
+  // Counted as the file says: joints without channels need no numbers.
+  const double last = std::min((frames - 1) * step, options.to.value_or(k_largest_number));
+  const double kept = std::clamp((last - options.from) / step + 2.0, 1.0, 1.0 * frames);
+  check_memory(kept * joints * sizeof(Transform), file.string(), "Frames",
+               with_commas(static_cast<std::uint64_t>(kept)) + " frames of " + with_commas(joints) + " joints");
 
   Mocap mocap;
   Clip& clip = mocap.clip;

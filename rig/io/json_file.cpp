@@ -2,6 +2,7 @@
 
 #include "rig/io/file_io.h"
 #include "rig/text.h"
+#include "rig/io/memory_limit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -54,15 +55,46 @@ std::string place_of_number(std::string_view text, const std::string& reason) {
   return offset == std::string_view::npos ? "" : place_of(text, offset + 1);
 }
 
+/// Bytes that a value takes in the tree, with what readers of it take for a while (JsonValue::items), at the most: of a
+/// number or word, of an array or object besides its values, of a member besides its value. Measured as the peak of the
+/// process (tests/rig/io/test_memory_limit.cpp does it again).
+constexpr double k_bytes_a_value = 64.0, k_bytes_a_container = 256.0, k_bytes_a_member = 256.0;
+
+/// What parsing the text will take, and what it is made of, by what separates its values: counted in one pass. Comments
+/// count as what they look like.
+struct Size {
+  double bytes = 0.0;
+  std::uint64_t values = 0;
+};
+Size size_of(std::string_view text) {
+  std::uint64_t values = 1, containers = 0, members = 0;
+  bool in_string = false;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const char c = text[k];
+    if (c == '"') in_string = !in_string;
+    else if (in_string) k += c == '\\'; // what follows means nothing
+    else if (c == ',') ++values;
+    else if (c == ':') ++members;
+    else if (c == '[' || c == '{') ++containers;
+  }
+  return {k_bytes_a_value * static_cast<double>(values) + k_bytes_a_container * static_cast<double>(containers) +
+              k_bytes_a_member * static_cast<double>(members) + static_cast<double>(text.size()),
+          values};
+}
+
 } // namespace
 
-JsonValue JsonValue::read(const std::filesystem::path& file) { return parse(read_file(file), file.string()); }
+JsonValue JsonValue::read(const std::filesystem::path& file) {
+  return within_memory(file.string(), [&] { return parse(read_file(file), file.string()); });
+}
 
 JsonValue JsonValue::parse(std::string_view text, std::string name) {
   auto document = std::make_shared<Document>();
   document->file = std::move(name);
   if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
     throw InputError(document->file, "", "an empty file", "JSON");
+  const Size size = size_of(text);
+  check_memory(size.bytes, document->file, "", "JSON of " + with_commas(size.values) + " values");
 
   constexpr int k_deepest = 64; // far deeper than any of our files; keeps a hostile file off the stack
   std::vector<std::set<std::string>> open_objects;
@@ -186,8 +218,14 @@ int JsonValue::integer_in(int lowest, int highest) const {
 }
 
 std::vector<double> JsonValue::numbers() const {
+  if (!node_->is_array()) throw error("an array");
   std::vector<double> all;
-  for (const JsonValue& item : items()) all.push_back(item.number());
+  all.reserve(node_->size());
+  for (std::size_t i = 0; i < node_->size(); ++i) {
+    const json& item = (*node_)[i];
+    const bool is_good = item.is_number() && std::abs(item.get<double>()) <= k_largest_number;
+    all.push_back(is_good ? item.get<double>() : child(std::to_string(i), item).number()); // which says what is wrong
+  }
   return all;
 }
 

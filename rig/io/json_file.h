@@ -20,8 +20,8 @@ namespace tutu {
 /// its values does. All functions throw InputError on a value of another type than asked.
 class JsonValue {
 public:
-  /// Parses `file`. Throws InputError with line and column on a syntax error, on a key given twice, and on an empty
-  /// file.
+  /// Parses `file`. Throws InputError with line and column on a syntax error, on a key given twice, on an empty file,
+  /// and where its values would take more memory than memory_limit.h allows.
   static JsonValue read(const std::filesystem::path& file);
   /// The same from text; `name` stands for the file in messages.
   static JsonValue parse(std::string_view text, std::string name);

@@ -3,6 +3,7 @@
 #include "rig/io/clip_file.h"
 #include "rig/io/file_io.h"
 #include "rig/io/json_file.h"
+#include "rig/io/memory_limit.h"
 
 #include <algorithm>
 #include <array>
@@ -47,6 +48,9 @@ std::string_view next_word(std::string_view& text) {
 void read_text(const std::filesystem::path& file, Text& text) {
   text.file = file.string();
   text.content = read_file(file);
+  const auto lines = static_cast<double>(std::count(text.content.begin(), text.content.end(), '\n'));
+  check_memory(static_cast<double>(text.content.size()) + 2.0 * sizeof(Text::Line) * lines, text.file, "",
+               "a text of " + with_commas(static_cast<std::uint64_t>(lines)) + " lines");
   std::string_view rest = text.content;
   for (int number = 1; !rest.empty(); ++number) {
     const std::size_t end = std::min(rest.find('\n'), rest.size());
@@ -200,6 +204,11 @@ RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std:
     if (text->lines.size() != times.size())
       throw InputError(text->file, "", std::to_string(text->lines.size()) + " poses",
                        std::to_string(times.size()) + ", one a time of " + files.times.string());
+
+  constexpr double k_bytes_a_joint = 192.0; // of a key: a node of RawClip::Key::joints and its name
+  check_memory(k_bytes_a_joint * static_cast<double>(times.size()) * static_cast<double>(joints.size()),
+               translations.file, "",
+               with_commas(times.size()) + " poses of " + with_commas(joints.size()) + " joints");
 
   RawClip clip;
   clip.file = translations.file;

@@ -9,9 +9,6 @@ namespace {
 
 nlohmann::json json_of(const cloth::Spread& s) { return {{"max", s.max}, {"p99", s.p99}, {"mean", s.mean}}; }
 
-double median_of(std::vector<double> samples) { return cloth::percentile(samples, 0.5); }
-double p99_of(std::vector<double> samples) { return cloth::percentile(samples, 0.99); }
-
 /// As cloth::penetration_of, of what the garment collided with.
 std::vector<double> depths_in_body(const Session& session, int g) {
   const std::vector<std::uint8_t> pinned = cloth::pinned_flags(session.scene().garments[g]);
@@ -27,7 +24,7 @@ std::vector<double> depths_in_body(const Session& session, int g) {
 void RunStats::add(const Session& session) {
   const FrameTimes& t = session.times();
   const double ms[] = {t.pose, t.proxies, t.broad, t.cloth, t.contact, t.skin, t.total()};
-  for (std::size_t k = 0; k < stages_.size(); ++k) stages_[k].ms.push_back(ms[k]);
+  for (std::size_t k = 0; k < stages_.size(); ++k) stages_[k].ms.add(ms[k]);
   const proxies::SweptColliders colliders = session.colliders().swept();
   history_.resize(scene_->garments.size());
   for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
@@ -55,7 +52,8 @@ void RunStats::add(const Session& session) {
 
 nlohmann::json RunStats::json(const Session& session) const {
   nlohmann::json ms;
-  for (const Stage& stage : stages_) ms[stage.name] = {{"median", median_of(stage.ms)}, {"p99", p99_of(stage.ms)}};
+  for (const Stage& stage : stages_)
+    ms[stage.name] = {{"median", stage.ms.percentile(0.5)}, {"p99", stage.ms.percentile(0.99)}};
   nlohmann::json result = {
       {"scene", scene_->name()},
       {"frames", frames_},
@@ -106,7 +104,7 @@ std::string RunStats::text(const Session& session) const {
   if (frames_ == 0) return text;
   text += "ms a frame, median (p99):";
   for (const Stage& stage : stages_)
-    text += fmt::format("  {} {:.3f} ({:.3f})", stage.name, median_of(stage.ms), p99_of(stage.ms));
+    text += fmt::format("  {} {:.3f} ({:.3f})", stage.name, stage.ms.percentile(0.5), stage.ms.percentile(0.99));
   const cloth::Spread depth = depths_mm_.spread(), stretch = this->stretch();
   text += fmt::format("\ninto {}: {:.2f} mm at most, {:.3f} mean   threads longer by {:.1f} % at most, {:.1f} "
                       "p99, off by {:.1f} mean   "

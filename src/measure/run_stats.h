@@ -14,7 +14,8 @@ namespace tutu::app {
 /// below any depth that could be seen.
 inline constexpr double k_inside_depth = 1e-6;
 
-/// Collects after each frame; measures outside the timings.
+/// Collects after each frame; measures outside the timings. Its memory does not grow with the run beyond the first
+/// cloth::PercentileGatherer::k_exact frames.
 class RunStats {
 public:
   explicit RunStats(const Scene& scene) : scene_(&scene) {}
@@ -32,7 +33,7 @@ private:
   nlohmann::json substeps_json(const Session& session) const;
   struct Stage {
     const char* name;
-    std::vector<double> ms; ///< a frame each
+    cloth::PercentileGatherer ms; ///< a sample a frame
   };
   struct History { ///< of one garment: the last two frames' positions
     std::vector<Vec3> last, before_last;

@@ -21,8 +21,10 @@ double fastest_of(const Session& session) {
 
 } // namespace
 
-DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress) {
+DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress,
+                  const std::atomic<bool>* stop) {
   Session session(scene);
+  session.stop_when(stop);
   const std::vector<Transform>& rest = scene.character.skeleton.rest_local;
   const auto first = scene.clip.key(0);
   std::vector<Transform> local(rest.size());
@@ -35,6 +37,7 @@ DrapeResult drape(const Scene& scene, double longest, const std::function<bool(i
     const double s = u * u * (3.0 - 2.0 * u); // starts and stops without a jerk
     for (std::size_t j = 0; j < local.size(); ++j) local[j] = s < 1.0 ? interpolate(rest[j], first[j], s) : first[j];
     session.advance_to(local, k_drape_drag);
+    if (session.stopped()) break;
     result.fastest = fastest_of(session);
     if (!progress(frame + 1, total)) break;
     if (frame >= posing && result.fastest < cloth::k_settled_speed) break;

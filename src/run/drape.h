@@ -17,8 +17,10 @@ struct DrapeResult {
   double fastest = 0.0;       ///< m/s at the end
   std::optional<SessionFailure> failure;
 };
-/// `progress(done, total)` is called each frame; returning false stops (the positions so far are returned).
-DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress);
+/// `progress(done, total)` is called each frame; returning false stops (the positions so far are returned). So does
+/// `stop` within a frame (Session::stop_when), without a call for it.
+DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress,
+                  const std::atomic<bool>* stop = nullptr);
 
 /// Of everything a drape depends on: garments, first pose, proxies, ground, solver settings.
 std::uint64_t drape_fingerprint(const Scene& scene);

@@ -1,5 +1,6 @@
 #include "src/run/session.h"
 
+#include "cloth/state/tolerances.h"
 #include "src/base/stopwatch.h"
 
 #include <algorithm>
@@ -24,13 +25,12 @@ std::optional<proxies::Plane> ground_of(const Scene& scene) {
 } // namespace
 
 std::string SessionFailure::message() const {
-  const Vec3& p = divergence.position;
   std::string text =
-      fmt::format("{} diverged in frame {} (t = {:.4f} s, substep {}): an edge at particle {} ({:.6g}, {:.6g}, "
-                  "{:.6g}) is stretched by {:.6g} %; the largest force is {:.3g} N on particle {}",
-                  garment, frame, time, divergence.substep, divergence.particle, p.x(), p.y(), p.z(),
-                  100.0 * divergence.stretch, divergence.strongest_force, divergence.strongest_particle);
-  if (tries > 0)
+      fmt::format("{} diverged in frame {} (t = {:.4f} s, substep {}{}): {}", garment, frame, time, divergence.substep,
+                  substeps > 0 ? fmt::format(" of {}", substeps) : "", cloth::what_was_found(divergence));
+  if (worn_out)
+    text += fmt::format("; it held only as a jump, from rest, for the {}th frame in a row", cloth::k_stops_in_a_row);
+  else if (tries > 0)
     text += fmt::format("; {} tries with smaller substeps, the last with {} a frame, did not hold either", tries,
                         last_substeps);
   return text;
@@ -38,10 +38,8 @@ std::string SessionFailure::message() const {
 
 std::string SessionRecovery::message() const {
   const cloth::Divergence& d = recovery.divergence;
-  return fmt::format("{} recovered in frame {} (t = {:.4f} s): an edge at particle {} ({:.4g}, {:.4g}, {:.4g}) was "
-                     "stretched by {:.4g} % in substep {} of {}; taken again{} with {} substeps",
-                     garment, frame, time, d.particle, d.position.x(), d.position.y(), d.position.z(),
-                     100.0 * d.stretch, d.substep, recovery.first_substeps,
+  return fmt::format("{} recovered in frame {} (t = {:.4f} s, substep {} of {}): {}; taken again{} with {} substeps",
+                     garment, frame, time, d.substep, recovery.first_substeps, cloth::what_was_found(d),
                      recovery.at_rest ? " as a jump, from rest," : "", recovery.substeps);
 }
 
@@ -80,6 +78,7 @@ void Session::start(const GarmentPositions& garment_positions) {
   start_time_ = 0.0;
   frame_ = 0;
   failure_.reset();
+  stopped_ = false;
   times_ = {};
   troubles_ = {};
   troubles_.first_recoveries.reserve(SessionTroubles::k_kept);
@@ -96,6 +95,7 @@ void Session::jump(double time) {
   const std::vector<Transform> before = failed ? start_world_ : world_;
   start_time_ = time - frame_ * frame_seconds();
   failure_.reset();
+  stopped_ = false;
   pose_at(time);
   colliders_.reset(world_);
   reset_body();
@@ -129,7 +129,7 @@ bool Session::has_jumped() const {
 }
 
 void Session::advance() {
-  if (failure_) return;
+  if (failure_ || stopped_) return;
   Stopwatch watch;
   // The body moves first: garments see where it was and where it comes to.
   rig::sample(scene_->clip, scene_->clip.times.front() + time() + frame_seconds(), local_);
@@ -139,7 +139,7 @@ void Session::advance() {
 }
 
 void Session::advance_to(std::span<const Transform> local, double extra_drag) {
-  if (failure_) return;
+  if (failure_ || stopped_) return;
   times_ = {};
   Stopwatch watch;
   if (local.data() != local_.data()) local_.assign(local.begin(), local.end());
@@ -163,7 +163,7 @@ void Session::advance_to(std::span<const Transform> local, double extra_drag) {
   frame_is_split_ = false;
   advance_garments(extra_drag);
   troubles_.frames_split += frame_is_split_;
-  if (!failure_) ++frame_;
+  if (!failure_ && !stopped_) ++frame_;
 }
 
 void Session::advance_garments(double extra_drag) {
@@ -190,6 +190,7 @@ void Session::advance_garment(std::size_t g, double extra_drag) {
   input.seconds = frame_seconds();
   input.substeps = scene_->settings.substeps;
   input.extra_drag = extra_drag;
+  input.stop = stop_;
   frame.planning = 0.0;
   if (scene_->settings.adaptive_substeps) {
     Stopwatch watch;
@@ -199,18 +200,27 @@ void Session::advance_garment(std::size_t g, double extra_drag) {
     frame.planning = watch.lap();
   }
   if (collides_with_body()) input.colliders = {{}, {}, colliders_.ground(), {}, body_start_, body_end_};
-  frame.divergence = solver.step(input, *queries_[g]);
+  frame.end = solver.step(input, *queries_[g]);
 }
 
 void Session::note_garment(std::size_t g) {
   const std::string& name = scene_->garments[g].name;
   const GarmentFrame& frame = garment_frames_[g];
+  if (frame.end && std::holds_alternative<cloth::Stopped>(*frame.end)) stopped_ = true;
   if (scene_->settings.adaptive_substeps && frame.plan.split(scene_->settings.substeps)) note_split(g, frame.plan);
   if (const auto& recovery = garments_[g].recovery()) {
     const cloth::Divergence& bad = recovery->divergence;
     const double moment = time() + frame_seconds() * (bad.substep + 1) / recovery->first_substeps;
-    if (frame.divergence) {
-      if (!failure_) failure_ = SessionFailure{name, bad, frame_, moment, recovery->tries, recovery->substeps};
+    if (frame.end) {
+      if (!failure_)
+        failure_ = SessionFailure{name,
+                                  bad,
+                                  frame_,
+                                  moment,
+                                  recovery->tries,
+                                  recovery->substeps,
+                                  recovery->worn_out,
+                                  recovery->first_substeps};
     } else {
       ++troubles_.recoveries;
       if (troubles_.first_recoveries.size() < SessionTroubles::k_kept)

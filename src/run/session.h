@@ -7,6 +7,7 @@
 #include "src/base/workers.h"
 #include "src/run/garment_pins.h"
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -32,8 +33,10 @@ struct SessionFailure {
   double time = 0.0;     ///< s, of the substep
   int tries = 0;         ///< to take the frame again, all in vain,
   int last_substeps = 0; ///< the last with so many substeps a frame
+  bool worn_out = false; ///< but for the last, as in so many frames before that this was the end: Recovery::worn_out
+  int substeps = 0;      ///< a frame, of the first try; 0: not told
 
-  /// One sentence: garment, frame, time, particle, position, stretch, strongest force, tries.
+  /// One sentence: garment, frame, time, substep, what was found and where, what brought it about, tries.
   std::string message() const;
 };
 
@@ -44,7 +47,7 @@ struct SessionRecovery {
   int frame = 0;
   double time = 0.0; ///< s, of the substep that was bad first
 
-  std::string message() const; ///< one sentence, with the first bad constraint
+  std::string message() const; ///< one sentence, with what was found first
 };
 
 /// What a session had to do beyond taking each frame as asked, since start().
@@ -77,8 +80,11 @@ public:
   /// holds it and is at rest, so that the jump is never seen as a velocity. After a failure the start is carried there.
   void jump(double time);
 
-  /// One frame of the clip. Does nothing once it has failed. Where the joints that hold garments jump (a cut in the
-  /// clip), garments are carried along as in jump().
+  /// From now on a frame ends early once `*stop` is true, between two substeps: stopped(). Not owned; null: never.
+  void stop_when(const std::atomic<bool>* stop) { stop_ = stop; }
+
+  /// One frame of the clip. Does nothing once it has failed or was stopped. Where the joints that hold garments jump (a
+  /// cut in the clip), garments are carried along as in jump().
   void advance();
 
   /// One frame towards a given pose (parent_from_joint), with more drag (1/s): how garments are draped.
@@ -92,6 +98,9 @@ public:
   double frame_seconds() const { return scene_->settings.frame_seconds(); }
   double time() const { return start_time_ + frame_ * frame_seconds(); } ///< s since the clip's start
   const std::optional<SessionFailure>& failure() const { return failure_; }
+  /// The last frame was not taken: frame() does not count it, garments are as at its start, while joints and colliders
+  /// are already at its end. Not a failure; start() and jump() go on from it.
+  bool stopped() const { return stopped_; }
   const SessionTroubles& troubles() const { return troubles_; }
   const FrameTimes& times() const { return times_; }
   std::span<const Transform> world_from_joint() const { return world_; }
@@ -128,7 +137,7 @@ private:
   struct GarmentFrame {
     cloth::SubstepPlan plan;
     double planning = 0.0; ///< ms
-    std::optional<cloth::Divergence> divergence;
+    std::optional<cloth::Unfinished> end;
   };
   void advance_garment(std::size_t g, double extra_drag);
   void note_garment(std::size_t g);
@@ -154,6 +163,8 @@ private:
   FrameTimes times_;
   std::optional<SessionFailure> failure_;
   SessionTroubles troubles_;
+  const std::atomic<bool>* stop_ = nullptr;
+  bool stopped_ = false;
   bool frame_is_split_ = false;
   double start_time_ = 0.0;
   int frame_ = 0;

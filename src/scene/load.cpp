@@ -1,9 +1,11 @@
 #include "src/scene/load.h"
 
 #include "cloth/garment/garment_file.h"
+#include "cloth/garment/garment_memory.h"
 #include "proxies/proxy_file.h"
 #include "rig/error.h"
 #include "rig/import/import.h"
+#include "rig/io/memory_limit.h"
 
 #include <cstdlib>
 #include <fmt/format.h>
@@ -14,9 +16,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Refuses keys whose poses would take too much memory. A key may name a few joints, its pose has all of them.
+void check_poses(std::size_t keys, const rig::Skeleton& skeleton, const std::string& file) {
+  const auto joints = static_cast<std::size_t>(skeleton.joint_count());
+  const double bytes_a_joint = sizeof(Transform) + sizeof(rig::Clip::Velocity);
+  check_memory(static_cast<double>(keys) * static_cast<double>(joints) * bytes_a_joint, file, "",
+               fmt::format("{} poses of {} joints", with_commas(keys), with_commas(joints)));
+}
+
+rig::Clip build(const rig::RawClip& raw, const rig::Skeleton& skeleton) {
+  check_poses(raw.keys.size(), skeleton, raw.file);
+  return rig::build_clip(raw, skeleton);
+}
+
 /// A clip made for `source` on the character; what found no joint there becomes a note.
 rig::Clip retargeted(const rig::Clip& clip, const rig::Skeleton& source, const rig::Skeleton& skeleton,
                      const fs::path& file, std::vector<std::string>& notes) {
+  check_poses(clip.times.size(), skeleton, file.string());
   std::vector<std::string> unmatched;
   rig::Clip result = rig::retarget(clip, source, skeleton, &unmatched);
   if (!unmatched.empty())
@@ -27,9 +43,9 @@ rig::Clip retargeted(const rig::Clip& clip, const rig::Skeleton& source, const r
 /// Puts the clip on the character, by way of the skeleton it was made for when that is another one.
 rig::Clip clip_for(const ClipMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
   const rig::RawClip raw = rig::read_clip(motion.clip);
-  if (!motion.retarget_from) return rig::build_clip(raw, skeleton);
+  if (!motion.retarget_from) return build(raw, skeleton);
   const rig::Skeleton source = rig::import_character(*motion.retarget_from).character.skeleton;
-  return retargeted(rig::build_clip(raw, source), source, skeleton, motion.clip, notes);
+  return retargeted(build(raw, source), source, skeleton, motion.clip, notes);
 }
 
 rig::Clip clip_for(const MocapMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
@@ -61,10 +77,10 @@ const rig::RawClip& own_animation(const OwnMotion& motion, const rig::Import& im
 rig::Clip load_motion(const SceneDescription& description, const rig::Import& import, std::vector<std::string>& notes) {
   const rig::Skeleton& skeleton = import.character.skeleton;
   if (const auto* own = std::get_if<OwnMotion>(&description.motion))
-    return rig::build_clip(own_animation(*own, import, description.file.string()), skeleton);
+    return build(own_animation(*own, import, description.file.string()), skeleton);
   if (const auto* texts = std::get_if<rig::ThreeTexts>(&description.motion)) {
     std::string unit_note;
-    rig::Clip clip = rig::build_clip(rig::read_three_texts(*texts, skeleton, &unit_note), skeleton);
+    rig::Clip clip = build(rig::read_three_texts(*texts, skeleton, &unit_note), skeleton);
     if (!unit_note.empty()) notes.push_back(unit_note);
     return clip;
   }
@@ -72,12 +88,49 @@ rig::Clip load_motion(const SceneDescription& description, const rig::Import& im
   return clip_for(std::get<ClipMotion>(description.motion), skeleton, notes);
 }
 
+/// What the motion is read from, for messages.
+std::string motion_file(const SceneDescription& description) {
+  if (const auto* clip = std::get_if<ClipMotion>(&description.motion)) return clip->clip.string();
+  if (const auto* mocap = std::get_if<MocapMotion>(&description.motion)) return mocap->bvh.string();
+  if (const auto* texts = std::get_if<rig::ThreeTexts>(&description.motion)) return texts->translations.string();
+  return description.character.string();
+}
+
+/// The scene's garments as their files have them, which are read. Refuses those that would take too much memory, each
+/// for itself or all together, before any is built.
+std::vector<cloth::GarmentDescription> read_garments(const SceneDescription& description, std::size_t proxies) {
+  std::vector<cloth::GarmentDescription> garments;
+  double bytes = 0.0;
+  std::uint64_t particles = 0;
+  const std::string file = description.file.string();
+  for (const GarmentEntry& entry : description.garments) {
+    const std::string place = "/garments/" + std::to_string(garments.size());
+    const cloth::GarmentDescription& own =
+        garments.emplace_back(within_memory(entry.file.string(), [&] { return cloth::read_garment(entry.file); }));
+    const cloth::GarmentDescription garment = cloth::resampled(own, entry.resolution);
+    if (cloth::memory_of(garment) > memory_limit()) cloth::check_garment_memory(own);
+    const std::uint64_t count = cloth::particles_of(garment);
+    check_memory(cloth::memory_of(garment), file, place + "/resolution",
+                 fmt::format("a garment of {} particles", with_commas(count)));
+    check_memory(cloth::memory_of(garment, proxies), file, "/proxies",
+                 fmt::format("{} of them beside {} particles", with_commas(proxies), with_commas(count)));
+    bytes += cloth::memory_of(garment, proxies);
+    particles += count;
+    check_memory(bytes, file, place,
+                 fmt::format("{} garments of {} particles up to here", garments.size(), with_commas(particles)));
+  }
+  return garments;
+}
+
+WornGarment put_on(const GarmentEntry& entry, cloth::GarmentDescription garment, const rig::Character& character) {
+  return wear(cloth::fitted(cloth::resampled(std::move(garment), entry.resolution), entry.scale, entry.offset),
+              character);
+}
+
 } // namespace
 
 WornGarment put_on(const GarmentEntry& entry, const rig::Character& character) {
-  return wear(
-      cloth::fitted(cloth::resampled(cloth::read_garment(entry.file), entry.resolution), entry.scale, entry.offset),
-      character);
+  return put_on(entry, cloth::read_garment(entry.file), character);
 }
 
 LoadedScene load_scene(const SceneDescription& description) {
@@ -86,17 +139,25 @@ LoadedScene load_scene(const SceneDescription& description) {
   scene.files = description;
   scene.settings = description.settings;
   scene.ground_height = description.ground_height;
-  rig::Import import = rig::import_character(description.character, {description.max_influences});
+  rig::Import import = within_memory(description.character.string(), [&] {
+    return rig::import_character(description.character, {description.max_influences});
+  });
   for (const std::string& note : import.report.notes)
     scene.notes.push_back(description.character.filename().string() + ": " + note);
-  scene.clip = load_motion(description, import, scene.notes);
+  scene.clip = within_memory(motion_file(description), [&] { return load_motion(description, import, scene.notes); });
   if (description.interpolation) rig::set_interpolation(scene.clip, *description.interpolation);
   scene.character = std::move(import.character);
   rig::set_skinning(scene.character.skin, scene.character.mesh, description.skinning, description.character.string());
 
-  if (description.proxies) scene.proxies = proxies::read_proxies(*description.proxies, scene.character.skeleton);
-  for (const GarmentEntry& entry : description.garments) {
-    WornGarment worn = put_on(entry, scene.character);
+  if (description.proxies)
+    scene.proxies = within_memory(description.proxies->string(), [&] {
+      return proxies::read_proxies(*description.proxies, scene.character.skeleton);
+    });
+  std::vector<cloth::GarmentDescription> garments = read_garments(description, scene.proxies.size());
+  for (std::size_t g = 0; g < garments.size(); ++g) {
+    const GarmentEntry& entry = description.garments[g];
+    WornGarment worn =
+        within_memory(entry.file.string(), [&] { return put_on(entry, std::move(garments[g]), scene.character); });
     scene.attachment_joints.push_back(std::move(worn.joints));
     scene.skin_pins.push_back(std::move(worn.skin_pins));
     scene.garments.push_back(std::move(worn.garment));

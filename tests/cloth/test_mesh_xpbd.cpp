@@ -282,9 +282,9 @@ TYPED_TEST(MeshXpbdTest, DivergenceIsCaughtInItsSubstep) {
   input.pins_start = start;
   input.pins_end = end;
   const auto query = proxies::make_query(proxies::Backend::brute);
-  const auto divergence = cloth.step(input, *query);
-  ASSERT_TRUE(divergence.has_value());
-  EXPECT_EQ(divergence->substep, 0);
+  const auto result = cloth.step(input, *query);
+  ASSERT_TRUE(divergence_of(result));
+  EXPECT_EQ(divergence_of(result)->substep, 0);
 }
 
 TEST(MakeSolver, TakesTheOneForTrianglesWhereThereAreNoRows) {

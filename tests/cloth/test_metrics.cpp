@@ -52,6 +52,31 @@ TEST(Metrics, AGatheredSpreadIsTheSpreadOfTheSamples) {
   EXPECT_EQ(zeros.spread().p99, 0.0);
 }
 
+TEST(Metrics, PercentilesOfAFewAreExactAndOfManyBounded) {
+  std::mt19937_64 random(7);
+  std::lognormal_distribution<double> skewed(-1.0, 1.0);
+  std::vector<double> samples;
+  PercentileGatherer gatherer;
+  EXPECT_EQ(gatherer.percentile(0.5), 0.0);
+  for (const std::size_t count : {std::size_t{1}, std::size_t{99}, PercentileGatherer::k_exact,
+                                  PercentileGatherer::k_exact + 1, 3 * PercentileGatherer::k_exact}) {
+    while (samples.size() < count) {
+      samples.push_back(skewed(random));
+      gatherer.add(samples.back());
+    }
+    for (const double share : {0.0, 0.1, 0.5, 0.99, 1.0}) {
+      std::vector<double> all = samples;
+      const double exact = percentile(all, share), gathered = gatherer.percentile(share);
+      if (count <= PercentileGatherer::k_exact) {
+        EXPECT_EQ(gathered, exact) << count << ' ' << share;
+      } else if (share > 0.0) {
+        EXPECT_GE(gathered, exact) << count << ' ' << share;
+        EXPECT_LE(gathered, 1.011 * exact) << count << ' ' << share;
+      }
+    }
+  }
+}
+
 TEST(Metrics, PenetrationIsTheDeepestOverAllColliders) {
   Garment garment;
   garment.rest_positions.resize(3);

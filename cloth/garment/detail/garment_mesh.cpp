@@ -57,7 +57,20 @@ void take_sound_triangles(const MeshShape& mesh, const std::string& file, Garmen
                                  static_cast<std::uint32_t>(particle_of[t[2]])});
 }
 
+/// Of the ring at this radius (of the disc's) where rings are `step` apart.
+int particles_around(double radius, double step) {
+  return radius > 0.0 ? std::max(6, static_cast<int>(std::lround(6.0 * radius / step))) : 1;
+}
+
 } // namespace
+
+std::uint64_t disc_particles(const DiscShape& disc) {
+  if (!(disc.hole >= 0.0 && disc.hole < 1.0) || disc.rings < 1) return 0;
+  const double step = (1.0 - disc.hole) / disc.rings;
+  // Rings between the first and the last, the mean of both each: six for each step of their radius.
+  const double all = 0.5 * (disc.rings + 1.0) * (particles_around(disc.hole, step) + 6.0 / step);
+  return static_cast<std::uint64_t>(all);
+}
 
 MeshShape triangulated(const DiscShape& disc, const GarmentDescription& description) {
   if (!(disc.radius_x > 0.0 && disc.radius_z > 0.0) || !(disc.hole >= 0.0 && disc.hole < 1.0) || disc.rings < 1 ||
@@ -70,7 +83,7 @@ MeshShape triangulated(const DiscShape& disc, const GarmentDescription& descript
   int inner_count = 0;
   for (int ring = 0; ring <= disc.rings; ++ring) {
     const double radius = disc.hole + ring * step;
-    const int count = radius > 0.0 ? std::max(6, static_cast<int>(std::lround(6.0 * radius / step))) : 1;
+    const int count = particles_around(radius, step);
     const auto outer = static_cast<std::uint32_t>(mesh.positions.size());
     for (int k = 0; k < count; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / count;

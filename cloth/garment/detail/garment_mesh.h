@@ -5,6 +5,9 @@
 
 namespace tutu::cloth {
 
+/// How many particles triangulated() gives, of a disc that it does not refuse.
+std::uint64_t disc_particles(const DiscShape& disc);
+
 /// The disc's triangles. Ring k has about 6 particles for each radius step it is away from the centre, so that
 /// triangles are nearly equilateral. Throws InputError naming `description` when the shape has no area or too many
 /// particles.

@@ -200,10 +200,10 @@ std::optional<cloth::Divergence> DancerSkirt::advance() {
   input.friction = friction;
   input.seconds = 1.0 / k_dancer_frames_per_second;
   input.substeps = setup_.substeps;
-  const auto divergence = solver_->step(input, *query_);
+  const auto unfinished = solver_->step(input, *query_);
   cpu_ms_ = thread_cpu_ms() - before;
-  if (!divergence) ++frame_;
-  return divergence;
+  if (!unfinished) ++frame_;
+  return unfinished ? std::optional(*cloth::divergence_of(unfinished)) : std::nullopt; // nobody asks it to stop
 }
 
 } // namespace tutu::app

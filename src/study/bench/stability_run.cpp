@@ -92,13 +92,12 @@ StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& se
       input.substeps =
           cloth::plan_substeps(input, cloth::extent_of(solver.particles()), scene.garment.fabric.contact_offset())
               .substeps;
-    const auto divergence = solver.step(input, *query);
+    const auto end = solver.step(input, *query);
     ms.push_back(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
     run.most_substeps = std::max(run.most_substeps, parts * solver.substeps());
-    run.recoveries += solver.recovery() && !divergence;
-    if (divergence)
-      run.failure = fmt::format("diverged in frame {}: an edge at particle {} is stretched by {:.3g} %", frame,
-                                divergence->particle, 100.0 * divergence->stretch);
+    run.recoveries += solver.recovery() && !end;
+    if (const cloth::Divergence* bad = cloth::divergence_of(end))
+      run.failure = fmt::format("diverged in frame {}: {}", frame, cloth::what_was_found(*bad));
     else run.frames = (step + 1) / parts;
     counter.advance(solver.particles().positions, capsules);
     for (const double s : lengthening_of(scene.garment, solver.particles()))

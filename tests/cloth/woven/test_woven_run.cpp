@@ -119,10 +119,9 @@ void compare_in_double(ContactFeatures features) {
       std::int64_t contacts = 0;
       for (int frame = 0; frame < k_frames; ++frame) {
         const FrameInput input = limbs.advance(k_substeps);
-        const auto divergence = solver->step(input, *query);
-        ASSERT_FALSE(divergence.has_value())
-            << "frame " << frame << ", substep " << divergence->substep << ", particle " << divergence->particle
-            << ", stretch " << divergence->stretch;
+        const auto end = solver->step(input, *query);
+        ASSERT_FALSE(end.has_value()) << "frame " << frame << ", substep " << divergence_of(end)->substep << ": "
+                                      << what_was_found(*divergence_of(end));
         ASSERT_TRUE(frame_of(twin, garment, input, blocks, features, passes, &contacts)) << "frame " << frame;
         error = std::max(error, worst(solver->particles().positions, twin.x));
         ASSERT_LT(error, 1e-9) << "frame " << frame << ", " << passes << " passes";

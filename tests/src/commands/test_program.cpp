@@ -163,7 +163,7 @@ TEST_F(Program, RecoveriesAreCountedAndToldWithTheirPlace_slow) {
     const Outcome outcome =
         run_program({"play", s, "--no-pictures", "--frames", "60", "--json", (folder_ / "stats.json").string()});
     ASSERT_EQ(outcome.status, 0) << outcome.output;
-    EXPECT_THAT(outcome.output, AllOf(HasSubstr("stiff recovered in frame"), HasSubstr("an edge at particle")));
+    EXPECT_THAT(outcome.output, AllOf(HasSubstr("stiff recovered in frame"), HasSubstr("from particle")));
     const nlohmann::json stats = nlohmann::json::parse(read_file(folder_ / "stats.json"));
     EXPECT_GT(stats.at("recoveries"), 0);
     EXPECT_EQ(stats.at("diverged"), false);
