@@ -1,8 +1,8 @@
 #include "rig/io/json_file.h"
 
 #include "rig/io/file_io.h"
-#include "rig/text.h"
 #include "rig/io/memory_limit.h"
+#include "rig/text.h"
 
 #include <algorithm>
 #include <cmath>

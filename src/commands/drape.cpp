@@ -27,10 +27,13 @@ int run(const Options& options) {
   check_outputs({{options.out.empty() ? "the scene's drape" : "--out", file}}, inputs_of(scene.files));
   const int frames = static_cast<int>(options.seconds * scene.settings.frames_per_second);
   Progress bar("draping " + scene.name(), frames);
-  const DrapeResult result = drape(scene, options.seconds, [&](int done, int) {
-    bar.tick(done);
-    return !interrupted();
-  });
+  const DrapeResult result = drape(
+      scene, options.seconds,
+      [&](int done, int) {
+        bar.tick(done);
+        return !interrupted();
+      },
+      &interrupt_flag());
   bar.finish();
   if (result.failure) {
     fmt::print(stderr, "tutu: {}\n", result.failure->message());

@@ -176,10 +176,12 @@ PictureTarget picture_target(const PlayOptions& options, const Scene& scene) {
 int play_headless(const PlayOptions& options, const Draped& first, const Draped* other) {
   const LoadedScene& scene = first.scene;
   Session session(scene);
+  session.stop_when(&interrupt_flag());
   session.start(first.start);
   std::optional<Session> beside;
   if (other) {
     beside.emplace(other->scene);
+    beside->stop_when(&interrupt_flag());
     beside->start(other->start);
   }
   int frames = frames_to_play(options, scene);
@@ -201,12 +203,12 @@ int play_headless(const PlayOptions& options, const Draped& first, const Draped*
   Progress bar(scene.name(), frames);
   while (session.frame() < frames && !interrupted()) {
     session.advance();
-    if (session.failure()) break;
+    if (session.failure() || session.stopped()) break;
     session.skin_body();
     stats.add(session);
     if (beside) {
       beside->advance();
-      if (beside->failure()) break;
+      if (beside->failure() || beside->stopped()) break;
       beside->skin_body();
       other_stats.add(*beside);
       apart.add(session, *beside);

@@ -58,10 +58,13 @@ std::optional<GarmentPositions> draped_start(const LoadedScene& scene) {
                scene.files.drape.string());
   constexpr double k_longest = 4.0; // s: a start, not the last wrinkle
   Progress bar("draping", static_cast<int>(k_longest * scene.settings.frames_per_second));
-  const DrapeResult result = drape(scene, k_longest, [&](int done, int) {
-    bar.tick(done);
-    return !interrupted();
-  });
+  const DrapeResult result = drape(
+      scene, k_longest,
+      [&](int done, int) {
+        bar.tick(done);
+        return !interrupted();
+      },
+      &interrupt_flag());
   bar.finish();
   if (result.failure) {
     fmt::print(stderr, "tutu: while draping, {}\n", result.failure->message());
