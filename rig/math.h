@@ -44,6 +44,8 @@ Quat rotation_between(const Vec3& from, const Vec3& to);
 inline double triangle_area(const Vec3& a, const Vec3& b, const Vec3& c) { return 0.5 * (b - a).cross(c - a).norm(); }
 
 inline bool is_finite(const Vec3& v) { return v.allFinite(); }
+/// Every coordinate within +-k_largest_number; false for what is no number.
+inline bool is_in_bounds(const Vec3& v) { return (v.array().abs() <= k_largest_number).all(); }
 inline bool is_finite(const Transform& t) { return t.rotation.coeffs().allFinite() && t.translation.allFinite(); }
 
 } // namespace tutu

@@ -38,3 +38,4 @@
 #include "rig/skeleton.h"            // IWYU pragma: export
 #include "rig/skin.h"                // IWYU pragma: export
 #include "rig/strong_poses.h"        // IWYU pragma: export
+#include "rig/text.h"                // IWYU pragma: export

@@ -1,53 +1,51 @@
 #include "rig/text.h"
 
-#include <cstddef>
-#include <cstdint>
-
 namespace tutu {
 namespace {
 
-/// Bytes of the character that begins the text, 0 where that is none [RFC 3629, 4]; `code` is its number.
-std::size_t character_at(std::string_view text, std::uint32_t& code) {
-  const auto byte = [&](std::size_t k) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[k])); };
-  const std::uint32_t first = byte(0);
-  const std::size_t length = first < 0x80   ? 1
-                             : first < 0xC2 ? 0
-                             : first < 0xE0 ? 2
-                             : first < 0xF0 ? 3
-                             : first < 0xF5 ? 4
-                                            : 0;
-  if (length == 0 || length > text.size()) return 0;
-  code = length == 1 ? first : first & (0x7Fu >> length);
-  for (std::size_t k = 1; k < length; ++k) {
-    if ((byte(k) & 0xC0u) != 0x80u) return 0;
-    code = code << 6 | (byte(k) & 0x3Fu);
-  }
-  const bool too_long = (length == 3 && code < 0x800) || (length == 4 && code < 0x10000);
-  return too_long || (code >= 0xD800 && code < 0xE000) || code > 0x10FFFF ? 0 : length;
-}
+struct First {
+  std::size_t size; ///< bytes
+  bool plain;
+};
 
-bool is_control(std::uint32_t code) { return code < 0x20 || (code >= 0x7F && code < 0xA0); }
+/// The character that a text (not empty) begins with; a byte that begins none is one of its own, not plain.
+First first_character(std::string_view text) {
+  constexpr First k_broken = {1, false};
+  const auto lead = static_cast<unsigned char>(text[0]);
+  if (lead < 0x80) return {1, lead >= 0x20 && lead != 0x7f};
+  if (lead < 0xc0 || lead > 0xf4) return k_broken;
+  const std::size_t size = lead >= 0xf0 ? 4 : lead >= 0xe0 ? 3 : 2;
+  if (size > text.size()) return k_broken;
+  unsigned code = lead & (0x7fu >> size);
+  for (std::size_t i = 1; i < size; ++i) {
+    const auto next = static_cast<unsigned char>(text[i]);
+    if ((next & 0xc0) != 0x80) return k_broken;
+    code = code << 6 | (next & 0x3f);
+  }
+  constexpr unsigned k_least[] = {0, 0, 0x80, 0x800, 0x10000}; // by size: fewer bytes would have done
+  const bool surrogate = code >= 0xd800 && code < 0xe000;
+  if (code < k_least[size] || surrogate || code > 0x10ffff) return k_broken;
+  return {size, code >= 0xa0};
+}
 
 } // namespace
 
 bool is_plain_text(std::string_view text) {
-  std::uint32_t code = 0;
   while (!text.empty()) {
-    const std::size_t length = character_at(text, code);
-    if (length == 0 || is_control(code)) return false;
-    text.remove_prefix(length);
+    const First first = first_character(text);
+    if (!first.plain) return false;
+    text.remove_prefix(first.size);
   }
   return true;
 }
 
 std::string plain_text(std::string_view text, char instead) {
   std::string plain;
-  std::uint32_t code = 0;
   while (!text.empty()) {
-    const std::size_t length = character_at(text, code);
-    if (length == 0 || is_control(code)) plain += instead;
-    else plain += text.substr(0, length);
-    text.remove_prefix(length == 0 ? 1 : length);
+    const First first = first_character(text);
+    if (first.plain) plain += text.substr(0, first.size);
+    else plain += instead;
+    text.remove_prefix(first.size);
   }
   return plain;
 }

@@ -1,4 +1,4 @@
-// Text that people read: what of it may stand in a line, and what is made of the rest.
+// Text that comes from outside: fit to be shown and handed on, or made so.
 #pragma once
 
 #include <string>
@@ -6,10 +6,10 @@
 
 namespace tutu {
 
-/// Whether it is UTF-8 [RFC 3629] without control characters (C0, DEL, C1): one line, in every format that has lines.
+/// Valid UTF-8 [RFC 3629] without control characters (C0, DEL, C1).
 bool is_plain_text(std::string_view text);
 
-/// The same text with `instead` for each control character and for each byte that is not UTF-8.
+/// The text with `instead` in place of each control character and of each byte that is not UTF-8.
 std::string plain_text(std::string_view text, char instead = '_');
 
 } // namespace tutu

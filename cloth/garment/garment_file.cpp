@@ -1,5 +1,7 @@
 #include "cloth/garment/garment_file.h"
 
+#include "cloth/state/particles.h"
+#include "cloth/state/tolerances.h"
 #include "rig/import/surface.h"
 #include "rig/io/json_file.h"
 #include "rig/text.h"
@@ -89,7 +91,12 @@ MeshShape read_mesh(const JsonValue& json) {
   MeshShape mesh{std::move(surface.positions), std::move(surface.triangles)};
   const auto scale = json.find("scale");
   const double metres = scale ? scale->positive() : 1.0;
-  for (Vec3& p : mesh.positions) p *= metres;
+  for (Vec3& p : mesh.positions) {
+    p *= metres;
+    if (!is_in_world(p))
+      throw name.error(fmt::format("the point {:g} {:g} {:g} m in {}", p.x(), p.y(), p.z(), file.string()),
+                       fmt::format("points within {:g} m of the origin", k_world_radius));
+  }
   if (const auto pressed = json.find("pressed")) mesh.pressed = pressed->boolean();
   return mesh;
 }

@@ -1,8 +1,9 @@
-// What assimp 5.2.5 does not check in a Collada skin: it drops weights that are negative or not a number, and follows
-// joint indices beyond its own arrays. Only the texts of <skin> elements are looked at; anything else is assimp's to
-// judge.
+// What assimp 5.2.5 does not tell of a Collada file: it drops weights of a skin that are negative or not a number,
+// follows joint indices beyond its own arrays, and does not say which of its elements is in another document. Only
+// <skin> elements and references are looked at; anything else is assimp's to judge.
 #include "rig/error.h"
 #include "rig/import/detail/parts.h"
+#include "rig/import/detail/reach.h"
 #include "rig/io/file_io.h"
 
 #include <charconv>
@@ -37,6 +38,7 @@ std::string_view text_of(std::string_view parent, const std::string& name) {
   return {};
 }
 
+/// `tag` begins with a blank.
 std::string_view attribute(std::string_view tag, const std::string& name) {
   for (const char quote : {'"', '\''}) {
     std::size_t from = 0;
@@ -115,10 +117,32 @@ void check_skin(std::string_view skin, const std::string& file) {
   }
 }
 
+/// What a body cannot be read without, and the attribute that says where it is: "#id", or another document's address.
+constexpr std::pair<const char*, const char*> k_references[] = {{"<instance_visual_scene", "url"},
+                                                                {"<instance_node", "url"},
+                                                                {"<instance_geometry", "url"},
+                                                                {"<instance_controller", "url"},
+                                                                {"<instance_effect", "url"},
+                                                                {"<skin", "source"},
+                                                                {"<morph", "source"}};
+
+void check_references(std::string_view text, const std::string& file) {
+  const Reach reach(file);
+  for (const auto& [element, key] : k_references)
+    for (std::size_t from = 0; from < text.size();) {
+      const std::string_view name = attribute(between(text, element, ">", from), key);
+      if (name.empty() || name[0] == '#') continue;
+      if (!reach.holds_name(name)) throw out_of_reach(file, element + 1, name);
+      throw InputError(file, element + 1, std::string(name.substr(0, 120)) + ", in another document",
+                       "all of the character in one file");
+    }
+}
+
 } // namespace
 
-void check_collada_skins(const std::string& file) {
+void check_collada(const std::string& file) {
   const std::string text = read_file(file);
+  check_references(text, file);
   for (std::size_t from = 0; from < text.size();) {
     const std::string_view skin = between(text, "<skin ", "</skin>", from);
     if (!skin.empty()) check_skin(skin, file);

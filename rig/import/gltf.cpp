@@ -1,8 +1,9 @@
-// What assimp 5.2.5 does not tell of a glTF skin: it drops weights that are negative or not a number, and joints that
-// are not there. Only JOINTS_n and WEIGHTS_n of skinned meshes are looked at; whatever is malformed beyond them is
-// assimp's to judge.
+// What assimp 5.2.5 does not tell of a glTF file: it drops weights that are negative or not a number, and joints that
+// are not there, and follows the names of buffers anywhere. Only those names and JOINTS_n and WEIGHTS_n of skinned
+// meshes are looked at; whatever is malformed beyond them is assimp's to judge.
 #include "rig/error.h"
 #include "rig/import/detail/parts.h"
+#include "rig/import/detail/reach.h"
 #include "rig/io/file_io.h"
 
 #include <algorithm>
@@ -54,6 +55,15 @@ std::string from_base64(std::string_view text) {
   return bytes;
 }
 
+/// Throws InputError on a name that leads out of the file's folder, whether or not anything is there.
+std::string read_beside(const fs::path& file, const std::string& name, std::size_t buffer) {
+  if (!Reach(file).holds_name(name))
+    throw out_of_reach(file.string(), "/buffers/" + std::to_string(buffer) + "/uri", name);
+  std::error_code error;
+  const fs::path beside = file.parent_path() / name;
+  return fs::is_regular_file(beside, error) ? read_file(beside) : std::string();
+}
+
 Gltf open_gltf(const fs::path& file) {
   const std::string bytes = read_file(file);
   Gltf gltf;
@@ -69,12 +79,10 @@ Gltf open_gltf(const fs::path& file) {
   if (!gltf.root.is_object()) return gltf;
   for (const json& buffer : gltf.root.value("buffers", json::array())) {
     const std::string uri = buffer.value("uri", "");
-    std::error_code error;
-    const fs::path beside = file.parent_path() / uri;
     if (uri.empty()) gltf.buffers.emplace_back(binary);
     else if (uri.starts_with("data:"))
       gltf.buffers.push_back(from_base64(std::string_view(uri).substr(std::min(uri.find(',') + 1, uri.size()))));
-    else gltf.buffers.push_back(fs::is_regular_file(beside, error) ? read_file(beside) : std::string());
+    else gltf.buffers.push_back(read_beside(file, uri, gltf.buffers.size()));
   }
   return gltf;
 }
@@ -125,7 +133,7 @@ void check_primitive(const Gltf& gltf, const json& attributes, std::size_t joint
 
 } // namespace
 
-void check_gltf_skins(const std::string& file) {
+void check_gltf(const std::string& file) {
   try {
     const Gltf gltf = open_gltf(file);
     if (!gltf.root.is_object()) return;

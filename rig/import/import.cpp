@@ -34,6 +34,8 @@ Import import_loaded(const import_detail::Source& source, const ImportOptions& o
   build_mesh(source, nodes, surfaces, conversion, options, result.character, report);
   report.joints_without_weight = joints_without_weight(result.character);
   result.clips = build_clips(source, nodes, joints, conversion, report);
+  note_outside_textures(source, report);
+  clean_names(result);
   return result;
 }
 
@@ -42,15 +44,16 @@ Import import_loaded(const import_detail::Source& source, const ImportOptions& o
 Import import_character(const std::filesystem::path& file, const ImportOptions& options) {
   if (options.max_influences != 4 && options.max_influences != 8)
     throw std::invalid_argument("import_character: max_influences is 4 or 8");
+  using namespace import_detail;
   try {
-    const std::uintmax_t size = import_detail::check_acceptable(file);
-    return import_detail::isolated(file.string(), size,
-                                   [&] { return import_loaded(import_detail::load(file), options); });
-  } catch (const InputError&) {
-    throw;
-  } catch (const std::exception& error) { // out of memory on sizes a hostile file claims, and whatever assimp throws
-    throw InputError(file.string(), "", std::string("a file that cannot be read (") + error.what() + ")",
-                     "a rigged character");
+    const Bounds bounds = bounds_for(check_acceptable(file));
+    const std::string answer = isolated_answer(file.string(), bounds, k_expected_character, [&](Packer& packer) {
+      Import import = import_loaded(load(file), options);
+      pass(packer, import);
+    });
+    return unpack_import(answer, file.string());
+  } catch (...) {
+    rethrow_as_input_error(file.string(), k_expected_character);
   }
 }
 

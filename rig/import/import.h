@@ -36,7 +36,8 @@ struct Import {
 
 /// Reads Collada, glTF/GLB, FBX or .X (by assimp) into one skeleton, one mesh, one skin. Throws InputError on anything
 /// that cannot become a skinned character: missing, empty, truncated or hostile files, no joints, no skin, indices or
-/// weights out of range, non-finite numbers.
+/// weights out of range, non-finite numbers, buffers or geometry outside of the file's folder; and when it cannot be
+/// read apart from the program (rig/import/detail/box.h says what a reader may do). Names are plain text (rig/text.h).
 Import import_character(const std::filesystem::path& file, const ImportOptions& options = {});
 
 } // namespace tutu::rig

@@ -136,8 +136,10 @@ private:
       const Vec3 position =
           model_from_vertex * Vec3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
       vertices[v].position = position.cast<float>() + Vec3f::Zero(); // -0 becomes 0
-      if (!vertices[v].position.allFinite())
-        throw InputError(source_.file, "mesh " + surface.name, "a position out of all measure", "finite numbers");
+      if (!is_in_bounds(position))
+        throw InputError(source_.file, "mesh " + surface.name,
+                         "a position out of all measure of vertex " + std::to_string(v),
+                         "finite numbers within +-1e9 m");
       shares.clear();
       for (int i = surface.first[v]; i < surface.first[v + 1]; ++i) {
         const int s = slots[surface.influences[i].binding];

@@ -1,6 +1,7 @@
 // From bytes to assimp's scene, and its nodes.
 #include "rig/error.h"
 #include "rig/import/detail/parts.h"
+#include "rig/import/detail/reach.h"
 
 #include <Eigen/SVD>
 #include <algorithm>
@@ -60,17 +61,29 @@ std::string readable(std::string reason) {
   return reason;
 }
 
-/// A file may name others (buffers of a .gltf). Only regular files of a sane size are opened: a device or a pipe would
-/// hang.
-class RegularFilesOnly : public Assimp::DefaultIOSystem {
+/// A file may name others. Of these only glTF's buffers are needed, so nothing else is opened (materials of an .obj,
+/// say); and of all only regular files of a sane size within reach: a device or a pipe would hang.
+class OwnFilesOnly : public Assimp::DefaultIOSystem {
 public:
-  Assimp::IOStream* Open(const char* name, const char* mode) override {
+  OwnFilesOnly(const fs::path& model, bool has_buffers) : model_(model), reach_(model), has_buffers_(has_buffers) {}
+
+  bool Exists(const char* name) const override {
     std::error_code error;
-    if (!name || !mode || *mode != 'r' || !fs::is_regular_file(name, error) ||
-        fs::file_size(name, error) > k_largest_file)
-      return nullptr;
-    return DefaultIOSystem::Open(name, mode);
+    if (!name || (!has_buffers_ && !fs::equivalent(name, model_, error))) return false;
+    return reach_.holds(name) && fs::is_regular_file(name, error) && fs::file_size(name, error) <= k_largest_file;
   }
+  Assimp::IOStream* Open(const char* name, const char* mode) override {
+    if (name && has_buffers_ && !reach_.holds(name)) outside_ = name;
+    return mode && *mode == 'r' && Exists(name) ? DefaultIOSystem::Open(name, "rb") : nullptr;
+  }
+
+  const std::string& outside() const { return outside_; } ///< a buffer that was asked for out of reach; else empty
+
+private:
+  fs::path model_;
+  Reach reach_;
+  bool has_buffers_;
+  std::string outside_;
 };
 
 void keep_only_reader(Assimp::Importer& importer, const std::string& name) {
@@ -172,16 +185,19 @@ Source load(const fs::path& file, Purpose purpose) {
   Source source;
   source.file = file.string();
   const std::string extension = lower_extension(file);
-  if (extension == ".dae") check_collada_skins(source.file);
-  if (extension == ".gltf" || extension == ".glb") check_gltf_skins(source.file);
+  const bool is_gltf = extension == ".gltf" || extension == ".glb";
+  if (extension == ".dae") check_collada(source.file);
+  if (is_gltf) check_gltf(source.file);
 
   const auto importer = std::make_shared<Assimp::Importer>();
-  importer->SetIOHandler(new RegularFilesOnly); // owned by the importer
+  auto* const files = new OwnFilesOnly(file, is_gltf); // owned by the importer
+  importer->SetIOHandler(files);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   importer->SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true); // else a file without mesh gets one of cones
   keep_only_reader(*importer, readers_for(purpose).at(extension));
   const aiScene* scene = importer->ReadFile(source.file, 0);
+  if (!files->outside().empty()) throw out_of_reach(source.file, "", files->outside());
   if (!scene || !scene->mRootNode) {
     throw InputError(source.file, "", "a file that cannot be read (" + readable(importer->GetErrorString()) + ")",
                      expected_for(purpose));

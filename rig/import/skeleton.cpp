@@ -209,7 +209,12 @@ Skeleton build_skeleton(const Source& source, const std::vector<Node>& nodes, co
                      conversion.rotation * (conversion.scale * nodes[n].global.translation())});
   skeleton.rest_local.resize(model.size());
   local_from_model(skeleton, model, skeleton.rest_local);
-  for (Transform& local : skeleton.rest_local) local.rotation.normalize();
+  for (std::size_t j = 0; j < model.size(); ++j) {
+    skeleton.rest_local[j].rotation.normalize();
+    if (!is_in_bounds(skeleton.rest_local[j].translation))
+      throw InputError(source.file, "joint " + skeleton.names[j], "a rest position out of all measure",
+                       "finite numbers within +-1e9 m");
+  }
   skeleton.check(source.file);
   return skeleton;
 }

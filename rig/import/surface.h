@@ -17,7 +17,8 @@ struct TriangleSurface {
 };
 
 /// All triangles of an .obj, .ply, .stl, .gltf or .glb file (by assimp), each mesh where the file's nodes put
-/// it. Throws InputError on anything else: missing, empty, truncated or hostile files, no triangle, non-finite numbers.
+/// it. Materials are never opened. Throws InputError on anything else: missing, empty, truncated or hostile files, no
+/// triangle, points that are not finite or beyond +-k_largest_number; and as import_character() does on files outside.
 TriangleSurface import_surface(const std::filesystem::path& file);
 
 } // namespace tutu::rig

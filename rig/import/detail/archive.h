@@ -1,9 +1,10 @@
 // Private to the importer: an Import as bytes, so that a child process can hand it over. One machine, one build: no
-// versions.
+// versions. Where a file came from is not among them: who asked knows that.
 #pragma once
 
 #include "rig/character.h"
 #include "rig/import/import.h"
+#include "rig/import/surface.h"
 
 #include <cstddef>
 #include <map>
@@ -12,6 +13,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace tutu::rig::import_detail {
@@ -19,14 +21,15 @@ namespace tutu::rig::import_detail {
 class Packer {
 public:
   void raw(void* from, std::size_t size) { bytes_.append(static_cast<const char*>(from), size); }
-  void count(std::size_t& size) { raw(&size, sizeof size); }
-  const std::string& bytes() const { return bytes_; }
+  void count(std::size_t& size, std::size_t) { raw(&size, sizeof size); }
+  std::string take() { return std::move(bytes_); }
 
 private:
   std::string bytes_;
 };
 
-/// Throws std::runtime_error when the bytes end too early.
+/// Throws std::runtime_error when the bytes end too early. What it fills takes some 20 times the bytes at most,
+/// whatever counts they claim.
 class Unpacker {
 public:
   explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
@@ -35,10 +38,10 @@ public:
     rest_.copy(static_cast<char*>(to), size);
     rest_.remove_prefix(size);
   }
-  void count(std::size_t& size) {
+  /// Of elements that take `least` bytes each, or more.
+  void count(std::size_t& size, std::size_t least) {
     raw(&size, sizeof size);
-    if (size > rest_.size())
-      throw std::runtime_error("the reader's answer is cut off"); // an element has a byte at least
+    if (size > rest_.size() / least) throw std::runtime_error("the reader's answer is cut off");
   }
   bool at_end() const { return rest_.empty(); }
 
@@ -49,15 +52,28 @@ private:
 // pass(archive, value) writes or reads, whichever the archive does: one list of fields serves both ways.
 
 template <typename Archive, typename T>
-requires(std::is_arithmetic_v<T> || std::is_enum_v<T>) void pass(Archive& archive, T& value) {
-  archive.raw(&value, sizeof value);
+requires std::is_arithmetic_v<T>
+void pass(Archive& archive, T& value) { archive.raw(&value, sizeof value); }
+template <typename Archive> void pass(Archive& archive, bool& value) {
+  unsigned char byte = value ? 1 : 0; // a bool that is neither must never come to be
+  pass(archive, byte);
+  if (byte > 1) throw std::runtime_error("the reader's answer has a bool of " + std::to_string(byte));
+  value = byte == 1;
+}
+template <typename Archive> void pass(Archive& archive, Extrapolation& value) {
+  bool loops = value == Extrapolation::loop;
+  pass(archive, loops);
+  value = loops ? Extrapolation::loop : Extrapolation::clamp;
 }
 template <typename Archive, typename Scalar, int rows, int columns, int options>
 void pass(Archive& archive, Eigen::Matrix<Scalar, rows, columns, options>& value) {
   archive.raw(value.data(), sizeof(Scalar) * static_cast<std::size_t>(value.size()));
 }
 template <typename Archive> void pass(Archive& archive, Quat& value) { pass(archive, value.coeffs()); }
-template <typename Archive> void pass(Archive& archive, Eigen::Affine3d& value) { pass(archive, value.matrix()); }
+template <typename Archive> void pass(Archive& archive, Eigen::Affine3d& value) {
+  pass(archive, value.matrix());
+  value.makeAffine(); // its last row, whatever the bytes say
+}
 template <typename Archive> void pass(Archive& archive, Transform& value) {
   pass(archive, value.rotation);
   pass(archive, value.translation);
@@ -67,7 +83,7 @@ template <typename Archive, typename T, std::size_t size> void pass(Archive& arc
 }
 template <typename Archive> void pass(Archive& archive, std::string& value) {
   std::size_t size = value.size();
-  archive.count(size);
+  archive.count(size, 1);
   value.resize(size);
   archive.raw(value.data(), size);
 }
@@ -83,7 +99,7 @@ template <typename Archive> void pass(Archive& archive, JointKey& key) {
 }
 template <typename Archive> void pass(Archive& archive, std::map<std::string, JointKey>& value) {
   std::size_t size = value.size();
-  archive.count(size);
+  archive.count(size, 1);
   if (!value.empty()) {
     for (auto& [name, key] : value) {
       std::string copy = name;
@@ -98,6 +114,7 @@ template <typename Archive> void pass(Archive& archive, std::map<std::string, Jo
     pass(archive, name);
     pass(archive, key);
     value.emplace_hint(value.end(), std::move(name), key);
+    if (value.size() != i + 1) throw std::runtime_error("the reader's answer has a joint twice in a key");
   }
 }
 template <typename Archive> void pass(Archive& archive, MeshPart& part);
@@ -105,11 +122,17 @@ template <typename Archive> void pass(Archive& archive, RawClip::Key& key);
 template <typename Archive> void pass(Archive& archive, RawClip& clip);
 template <typename Archive, typename T> void pass(Archive& archive, std::vector<T>& value) {
   std::size_t size = value.size();
-  archive.count(size);
-  value.resize(size);
-  if constexpr (std::is_arithmetic_v<T>) archive.raw(value.data(), size * sizeof(T));
-  else
-    for (T& item : value) pass(archive, item);
+  if constexpr (std::is_arithmetic_v<T>) {
+    archive.count(size, sizeof(T));
+    value.resize(size);
+    archive.raw(value.data(), size * sizeof(T));
+  } else {
+    archive.count(size, 1);
+    for (std::size_t i = 0; i < size; ++i) {
+      if (i == value.size()) value.emplace_back(); // grows with what is there, not with what is claimed
+      pass(archive, value[i]);
+    }
+  }
 }
 template <typename Archive> void pass(Archive& archive, MeshPart& part) {
   pass(archive, part.name);
@@ -123,13 +146,11 @@ template <typename Archive> void pass(Archive& archive, RawClip::Key& key) {
   pass(archive, key.joints);
 }
 template <typename Archive> void pass(Archive& archive, RawClip& clip) {
-  pass(archive, clip.file);
   pass(archive, clip.name);
   pass(archive, clip.extrapolation);
   pass(archive, clip.keys);
 }
 template <typename Archive> void pass(Archive& archive, Character& character) {
-  pass(archive, character.file);
   pass(archive, character.skeleton.names);
   pass(archive, character.skeleton.parents);
   pass(archive, character.skeleton.rest_local);
@@ -161,6 +182,10 @@ template <typename Archive> void pass(Archive& archive, Import& import) {
   pass(archive, import.character);
   pass(archive, import.clips);
   pass(archive, import.report);
+}
+template <typename Archive> void pass(Archive& archive, TriangleSurface& surface) {
+  pass(archive, surface.positions);
+  pass(archive, surface.triangles);
 }
 
 } // namespace tutu::rig::import_detail

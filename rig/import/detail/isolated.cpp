@@ -1,77 +1,68 @@
 #include "rig/import/detail/isolated.h"
 
 #include "rig/error.h"
-#include "rig/import/detail/archive.h"
-#include "rig/import/import.h"
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <fcntl.h>
-#include <fstream>
-#include <sys/resource.h>
+#include <new>
+#include <poll.h>
 #include <sys/wait.h>
+#include <system_error>
 #include <unistd.h>
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool k_sanitized = true; // takes several times the memory, and its messages must be seen
-#else
-constexpr bool k_sanitized = false;
-#endif
+#include <utility>
 
 namespace tutu::rig::import_detail {
 namespace {
 
-constexpr std::uintmax_t k_least_memory = std::uintmax_t{1} << 30; ///< bytes beyond what the program has already
-constexpr std::uintmax_t k_memory_per_byte = 64;                   ///< of the file; Collada text needs about 20
-constexpr std::uintmax_t k_least_seconds = 15;                     ///< of the processor; a body of 2 MB takes 0.1
-constexpr std::uintmax_t k_bytes_per_second = 2'000'000;
+using Clock = std::chrono::steady_clock;
 
-enum class Answer : char { work = 'w', input_error = 'e', other_error = 'o' };
+constexpr std::uintmax_t k_patience = 20; ///< seconds to wait for each of the processor's: others may have it
+constexpr int k_no_memory_for_answer = 3; ///< exit status
 
-std::uintmax_t memory_in_use() {
-  std::ifstream statm("/proc/self/statm");
-  std::uintmax_t pages = 0;
-  statm >> pages;
-  return pages * static_cast<std::uintmax_t>(::sysconf(_SC_PAGESIZE));
-}
+/// A descriptor, closed when this goes.
+class Descriptor {
+public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
 
-void lower_limit(int resource, std::uintmax_t value) {
-  rlimit limit{};
-  if (::getrlimit(static_cast<__rlimit_resource_t>(resource), &limit) != 0) return;
-  limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, value);
-  ::setrlimit(static_cast<__rlimit_resource_t>(resource), &limit);
-}
-
-void bound_this_process(std::uintmax_t file_size) {
-  lower_limit(RLIMIT_CORE, 0);
-  lower_limit(RLIMIT_CPU, k_least_seconds + file_size / k_bytes_per_second);
-  lower_limit(RLIMIT_AS, memory_in_use() + (k_sanitized ? 4 : 1) * (k_least_memory + k_memory_per_byte * file_size));
-  if (k_sanitized) return;
-  if (const int null = ::open("/dev/null", O_WRONLY | O_CLOEXEC); null >= 0) ::dup2(null, STDERR_FILENO); // assertions
-}
-
-/// The bytes to hand back: the answer's kind, then the answer.
-std::string answer_of(const std::function<void(Packer&)>& work) {
-  Packer packer;
-  const auto kind = [&](Answer answer) {
-    packer = Packer();
-    packer.raw(&answer, sizeof answer);
-  };
-  try {
-    kind(Answer::work);
-    work(packer);
-  } catch (const InputError& error) {
-    kind(Answer::input_error);
-    for (std::string part : {error.file(), error.place(), error.found(), error.expected()}) pass(packer, part);
-  } catch (const std::exception& error) {
-    kind(Answer::other_error);
-    std::string what = error.what();
-    pass(packer, what);
+  int number() const { return number_; }
+  void close() {
+    if (number_ >= 0) ::close(std::exchange(number_, -1));
   }
-  return packer.bytes();
-}
+
+private:
+  int number_;
+};
+
+/// A child process; none is left behind when this goes.
+class Child {
+public:
+  explicit Child(pid_t process) : process_(process) {}
+  ~Child() {
+    if (process_ > 0) end();
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  /// Ends it if it has not ended; its status.
+  int end() {
+    ::kill(process_, SIGKILL); // changes nothing for one that is about to exit
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = 0;
+    return status;
+  }
+
+private:
+  pid_t process_;
+};
 
 void write_all(int descriptor, const std::string& bytes) {
   for (std::size_t done = 0; done < bytes.size();) {
@@ -82,122 +73,80 @@ void write_all(int descriptor, const std::string& bytes) {
   }
 }
 
-std::string read_all(int descriptor) {
+/// All that comes until the other end is closed. Throws InputError when it takes too long or is more than `bounds`
+/// allow anyone to have in memory.
+std::string read_all(int descriptor, const Bounds& bounds, const std::string& file, const std::string& expected) {
+  const auto deadline = Clock::now() + std::chrono::seconds(k_patience * bounds.seconds);
   std::string bytes;
   char part[65536];
   for (;;) {
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    pollfd ready = {descriptor, POLLIN, 0};
+    const int events = left > 0 ? ::poll(&ready, 1, static_cast<int>(std::min<long>(left, 1 << 30))) : 0;
+    if (events < 0 && errno == EINTR) continue;
+    if (events == 0) throw InputError(file, "", "a file whose reader falls silent", expected + " that is not damaged");
     const ssize_t got = ::read(descriptor, part, sizeof part);
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return bytes;
     bytes.append(part, static_cast<std::size_t>(got));
+    if (bytes.size() > bounds.memory)
+      throw InputError(file, "", "a file whose reader answers without end", expected + " that is not damaged");
   }
 }
 
-[[noreturn]] void run_child(int descriptor, std::uintmax_t file_size, const std::function<void(Packer&)>& work) {
-  bound_this_process(file_size);
+[[noreturn]] void run_child(int descriptor, const std::string& file, const Bounds& bounds,
+                            const std::function<void(Packer&)>& work) {
+  const int pipe = keep_only(descriptor);
   try {
-    write_all(descriptor, answer_of(work));
-  } catch (...) { // not even memory for the message: the parent sees that nothing came
+    write_all(pipe, answer_of([&](Packer& packer) {
+                close_box(bounds, file);
+                work(packer);
+              }));
+  } catch (...) { // not even memory for the message
+    ::_exit(k_no_memory_for_answer);
   }
   ::_exit(0);
 }
 
 std::string why(int status) {
+  if (WIFEXITED(status) && WEXITSTATUS(status) == k_no_memory_for_answer) return "for want of memory";
   if (!WIFSIGNALED(status)) return "without an answer";
   const int signal = WTERMSIG(status);
-  return signal == SIGXCPU || signal == SIGKILL ? "after too long a time" : "by signal " + std::to_string(signal);
-}
-
-/// A child that was led astray may have written anything.
-void check(const Import& import, const std::string& file) {
-  const Character& c = import.character;
-  const std::size_t vertices = c.mesh.positions.size(),
-                    slots = vertices * static_cast<std::size_t>(std::max(0, c.skin.influences));
-  bool sound = (c.skin.influences == 4 || c.skin.influences == 8) && c.mesh.normals.size() == vertices &&
-               c.skin.slots.size() == slots && c.skin.weights.size() == slots &&
-               c.skin.inverse_bind.size() == c.skin.slot_joint.size() &&
-               c.skeleton.parents.size() == c.skeleton.names.size() &&
-               c.skeleton.rest_local.size() == c.skeleton.names.size();
-  for (const int joint : c.skin.slot_joint) sound = sound && joint >= 0 && joint < c.skeleton.joint_count();
-  for (const std::uint16_t slot : c.skin.slots) sound = sound && slot < c.skin.slot_joint.size();
-  for (const Triangle& triangle : c.mesh.triangles)
-    for (const std::uint32_t v : triangle) sound = sound && v < vertices;
-  for (const MeshPart& part : c.mesh.parts)
-    sound = sound && part.first_triangle <= c.mesh.triangles.size() &&
-            part.triangle_count <= c.mesh.triangles.size() - part.first_triangle;
-  if (!sound) throw InputError(file, "", "a file that leads its reader astray", "a rigged character");
-  c.skeleton.check(file);
-}
-
-std::string bytes_of(const std::string& answer, int status, const std::string& file, const std::string& expected) {
-  if (answer.empty())
-    throw InputError(file, "", "a file that ends its reader " + why(status), expected + " that is not damaged");
-  Unpacker unpacker(answer);
-  Answer kind{};
-  unpacker.raw(&kind, sizeof kind);
-  if (kind == Answer::input_error) {
-    std::string parts[4];
-    for (std::string& part : parts) pass(unpacker, part);
-    throw InputError(parts[0], parts[1], parts[2], parts[3]);
-  }
-  if (kind == Answer::other_error) {
-    std::string what;
-    pass(unpacker, what);
-    throw std::runtime_error(what);
-  }
-  if (kind != Answer::work) throw std::runtime_error("the reader's answer is no answer");
-  return answer.substr(sizeof kind);
+  if (signal == SIGXCPU) return "after too long a time";
+  return "by signal " + std::to_string(signal) + (signal == SIGKILL ? ", as when the machine has no memory left" : "");
 }
 
 } // namespace
 
-std::string isolated_bytes(const std::string& file, std::uintmax_t file_size, const std::string& expected,
-                           const std::function<void(Packer&)>& work) {
+std::string isolated_answer(const std::string& file, const Bounds& bounds, const std::string& expected,
+                            const std::function<void(Packer&)>& work) {
   std::fflush(nullptr);
-  const auto unguarded = [&] {
-    Packer packer;
-    work(packer);
-    return packer.bytes();
-  };
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) return unguarded();
-  const pid_t child = ::fork();
-  if (child < 0) { // no process to be had: better unguarded than not at all
-    ::close(ends[0]);
-    ::close(ends[1]);
-    return unguarded();
-  }
-  if (child == 0) {
-    ::close(ends[0]);
-    run_child(ends[1], file_size, work);
-  }
-  ::close(ends[1]);
-  std::string answer;
-  try {
-    answer = read_all(ends[0]);
-  } catch (...) { // out of memory: leave no child behind
-    ::close(ends[0]);
-    ::waitpid(child, nullptr, 0);
-    throw;
-  }
-  ::close(ends[0]);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  return bytes_of(answer, status, file, expected);
+  if (::pipe2(ends, O_CLOEXEC) != 0)
+    throw std::system_error(errno, std::generic_category(), "no pipe to a process that reads it");
+  const Descriptor from(ends[0]);
+  Descriptor to(ends[1]);
+  const pid_t process = ::fork();
+  if (process < 0) throw std::system_error(errno, std::generic_category(), "no process to read it in");
+  if (process == 0) run_child(to.number(), file, bounds, work);
+  Child child(process);
+  to.close();
+  std::string answer = read_all(from.number(), bounds, file, expected);
+  if (const int status = child.end(); status != 0 || answer.empty())
+    throw InputError(file, "", "a file that ends its reader " + why(status), expected + " that is not damaged");
+  return answer;
 }
 
-Import isolated(const std::string& file, std::uintmax_t file_size, const std::function<Import()>& work) {
-  const std::string bytes = isolated_bytes(file, file_size, "a rigged character", [&](Packer& packer) {
-    Import import = work();
-    pass(packer, import);
-  });
-  Unpacker unpacker(bytes);
-  Import import;
-  pass(unpacker, import);
-  if (!unpacker.at_end()) throw std::runtime_error("the reader's answer is no answer");
-  check(import, file);
-  return import;
+void rethrow_as_input_error(const std::string& file, const std::string& expected) {
+  try {
+    throw;
+  } catch (const InputError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw InputError(file, "", "a file that takes more memory to read than there is", expected);
+  } catch (const std::exception& error) { // sizes a hostile file claims, and whatever assimp throws
+    throw InputError(file, "", std::string("a file that cannot be read (") + error.what() + ")", expected);
+  }
 }
 
 } // namespace tutu::rig::import_detail

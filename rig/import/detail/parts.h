@@ -44,9 +44,10 @@ enum class Purpose { character, surface };
 /// The size of the file in bytes. Throws InputError when it is missing, empty, too large or not of an accepted format.
 std::uintmax_t check_acceptable(const std::filesystem::path& file, Purpose purpose = Purpose::character);
 
-/// Throw InputError on joint and weight indices out of range and on weights that are negative or no number.
-void check_collada_skins(const std::string& file);
-void check_gltf_skins(const std::string& file);
+/// Throw InputError on joint and weight indices out of range, on weights that are negative or no number, and on
+/// geometry, skins or buffers in another document or outside of the file's folder.
+void check_collada(const std::string& file);
+void check_gltf(const std::string& file);
 
 /// Reads an acceptable file. Throws InputError when assimp cannot read it.
 Source load(const std::filesystem::path& file, Purpose purpose = Purpose::character);
@@ -129,6 +130,12 @@ void build_mesh(const Source& source, const std::vector<Node>& nodes, const std:
 
 std::vector<RawClip> build_clips(const Source& source, const std::vector<Node>& nodes, const Joints& joints,
                                  const Conversion& conversion, ImportReport& report);
+
+/// Textures are never opened; those that stand outside of the file's folder are noted.
+void note_outside_textures(const Source& source, ImportReport& report);
+
+/// Names of joints, mesh parts and clips as plain text, told apart as before; noted. The rest of the report's text too.
+void clean_names(Import& import);
 
 /// Does an animation of the file move this node away from its rest transform?
 bool is_moved(const Source& source, const Node& node);

@@ -160,6 +160,11 @@ TEST_F(MeshFile, EveryFormatIsRead) {
 TEST_F(MeshFile, EveryMistakeIsNamedWithItsPlace) {
   using ::testing::HasSubstr;
   EXPECT_THAT(refusal(R"({"shape": {"mesh": {"file": "none.obj"}}})"), HasSubstr("/shape/mesh/file: found no file"));
+  write_file(folder_ / "far.obj", "v 0 0 0\nv 2e8 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(refusal(R"({"shape": {"mesh": {"file": "far.obj"}}})"),
+              HasSubstr("/shape/mesh/file: found the point 2e+08 0 0 m in " + (folder_ / "far.obj").string() +
+                        ", expected points within 1e+06 m of the origin"));
+  EXPECT_EQ(refusal(R"({"shape": {"mesh": {"file": "far.obj", "scale": 1e-6}}})"), "");
   write_file(folder_ / "points.obj", "v 0 0 0\nv 1 0 0\n");
   EXPECT_THAT(refusal(R"({"shape": {"mesh": {"file": "points.obj"}}})"), HasSubstr("points.obj"));
   write_file(folder_ / "rubbish.obj", std::string(300, '\xff'));
