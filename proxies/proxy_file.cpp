@@ -121,6 +121,8 @@ private:
     if (!(ends[0] > 0.0 && ends[1] > 0.0)) throw radius.error("a radius above 0, or two: [at a, at b]");
     proxy.radius = ends[0];
     proxy.taper = ends[1] - ends[0];
+    // Beside a large radius a tiny one is rounded away.
+    if (!(proxy.radius + proxy.taper > 0.0)) throw radius.error("two radii that can be told from 0 beside each other");
   }
 
   void check_joint_is_used(const JsonValue& shape, std::initializer_list<JsonValue> ends) const {
@@ -188,13 +190,16 @@ private:
     const double sum = std::accumulate(anchor.weights.begin(), anchor.weights.begin() + anchor.count, 0.0);
     if (!std::isfinite(sum)) throw list.error("weights whose sum is finite");
     if (std::abs(sum - 1.0) <= k_sum_tolerance) return;
-    for (int k = 0; k < anchor.count; ++k) anchor.weights[k] /= sum;
+    for (int k = 0; k < anchor.count; ++k) {
+      anchor.weights[k] /= sum;
+      if (!(anchor.weights[k] > 0.0)) throw list.error("weights that can be told from 0 beside each other");
+    }
   }
 
   int joint(const JsonValue& name) const {
     const std::string text = name.string();
     if (const auto found = skeleton_.find(text)) return *found;
-    throw name.error(near_names(skeleton_, text));
+    throw name.error(near_names(skeleton_, text.substr(0, 100))); // how near is a product of lengths
   }
 
   const rig::Skeleton& skeleton_;

@@ -3,6 +3,7 @@
 #include "rig/flight.h"
 #include "rig/interpolation.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace tutu::rig {
@@ -24,15 +25,20 @@ Segments segments_at(const Clip& clip, std::size_t key) {
   return segments;
 }
 
+/// s. Keys may be so near to each other that no velocity between them is finite: those move as if they were a
+/// nanosecond apart.
+double duration_of(const Clip& clip, std::size_t segment) {
+  constexpr double k_least = 1e-9;
+  return std::max(k_least, clip.times[segment + 1] - clip.times[segment]);
+}
+
 Clip::Velocity chord(const Clip& clip, std::size_t segment, std::size_t joint) {
   const Transform& from = clip.key(static_cast<int>(segment))[joint];
   const Transform& to = clip.key(static_cast<int>(segment) + 1)[joint];
-  const double h = clip.times[segment + 1] - clip.times[segment];
+  const double h = duration_of(clip, segment);
   // About a fixed axis the angular velocity in the turning frame is the same at both ends.
   return {(to.translation - from.translation) / h, log_of(from.rotation.conjugate() * to.rotation) / h};
 }
-
-double duration_of(const Clip& clip, std::size_t segment) { return clip.times[segment + 1] - clip.times[segment]; }
 
 /// With which velocity a root takes off or lands at a key; none when both sides of it are on the ground.
 std::optional<Vec3> flight_velocity(const Clip& clip, const Segments& at, std::size_t root) {

@@ -66,6 +66,10 @@ void make_flights(Clip& clip, const std::string& file) {
     fly(clip, run, file);
     k = run.landing;
   }
+  for (std::size_t k = 1; k < keys; ++k) // a jump of some nanometres is over at once
+    if (!(clip.times[k] > clip.times[k - 1]))
+      throw InputError(file, "clip " + clip.name + ", key " + std::to_string(k),
+                       "a time that its jumps put on that of the key before", "jumps high enough to take time");
 }
 
 } // namespace tutu::rig

@@ -136,6 +136,8 @@ Hierarchy read_hierarchy(Words& words) {
       throw words.error(Words::quoted(word), "JOINT, End Site or }");
     }
   }
+  // Frames without numbers would be as many as the file says, whatever its size.
+  if (hierarchy.channel_count() == 0) throw words.error("a skeleton without channels", "one that moves");
   return hierarchy;
 }
 
@@ -217,8 +219,13 @@ Mocap read_bvh(const std::filesystem::path& file, const BvhOptions& options) {
   // Where zero is says nothing when nobody stands there; the rest frame stands where it was taken.
   if (!rest) skeleton.rest_local[0].translation.y() -= lowest;
   const double metres = k_bvh_stature / (highest - lowest);
-  for (Transform& local : skeleton.rest_local) local.translation *= metres;
-  for (Transform& local : clip.local) local.translation *= metres;
+  for (std::vector<Transform>* poses : {&skeleton.rest_local, &clip.local})
+    for (Transform& local : *poses) {
+      local.translation *= metres;
+      if (!(local.translation.array().abs() <= k_largest_number).all())
+        throw InputError(file.string(), "", "a skeleton that is flat beside its offsets and travel",
+                         "one that stands along +Y");
+    }
   mocap.skeleton = std::move(skeleton);
   mocap.skeleton.check(file.string());
   return mocap;

@@ -5,7 +5,6 @@
 #include "src/options/scene_options.h"
 #include "src/run/posed_body.h"
 #include "src/scene/load.h"
-#include "src/study/chart/reference_file.h"
 #include "src/study/chart/settings_grid.h"
 
 #include <algorithm>
@@ -79,7 +78,7 @@ ReferencePlan ChartOptions::plan(const LoadedScene& loaded) const {
 
 std::optional<Reference> ChartOptions::obtain(const LoadedScene& loaded, int jobs) const {
   const ReferencePlan plan = this->plan(loaded);
-  if (!reference.empty()) return read_reference(reference, loaded.name(), reference_fingerprint(loaded, plan));
+  if (!reference.empty()) return reference_from(reference, loaded, plan);
   const auto made = obtain_reference(
       loaded, plan, cache.empty() ? default_cache() : std::filesystem::path(cache), jobs,
       [&] { return draped_start(loaded); }, [] { return !interrupted(); });

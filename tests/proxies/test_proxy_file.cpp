@@ -114,6 +114,10 @@ TEST(ProxyFile, ErrorsNamePlaceFoundAndExpected) {
   }
   expect_error(R"({"capsule": {"joint": "Head", "a": [0,0,0], "b": [0,1,0], "radius": [0.1, -0.1]}})",
                "/proxies/0/capsule/radius", "or two: [at a, at b]");
+  expect_error(R"({"capsule": {"joint": "Head", "a": [0,0,0], "b": [0,1,0], "radius": [1e9, 1e-9]}})",
+               "/proxies/0/capsule/radius", "told from 0 beside each other");
+  expect_error(sphere(R"("center": {"point": [0,0,0], "joints": [["Head", 1e9], ["Hips", 1e-320]]}, "radius": 1)"),
+               s + "/center/joints", "told from 0 beside each other");
   expect_error(sphere(R"("joint": "Head", "center": [0,0], "radius": 1)"), s + "/center", "3 numbers");
   expect_error(sphere(R"("joint": "Head", "center": 5, "radius": 1)"), s + "/center", "[x, y, z]");
   expect_error(sphere(R"("joint": "Head", "center": [0,0,0], "radius": 1, "raduis": 1)"), s + "/raduis", "unknown key");

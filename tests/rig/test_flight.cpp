@@ -124,4 +124,19 @@ TEST(Flight, WhatCannotFlyIsRefusedWithItsPlace) {
   EXPECT_THAT(error_of(raw), HasSubstr("key 1: found an airborne root that is not above"));
 }
 
+TEST(Flight, AJumpThatIsOverAtOnceIsRefused) {
+  RawClip raw{"hop.json", "hop", Extrapolation::clamp, {}, Interpolation::cubic};
+  const auto add = [&](double time, double height, bool airborne) {
+    raw.keys.push_back({time, "", {{"Hips", {Vec3(0, height, 0), std::nullopt}}}, airborne});
+  };
+  add(1, 0, false);
+  add(2, 1e-33, true); // 3e-17 s, which is nothing beside 1 s
+  add(3, 0, false);
+  add(4, 0.1, false);
+  EXPECT_THAT(error_of(raw),
+              HasSubstr("hop.json: clip hop, key 1: found a time that its jumps put on that of the key"));
+  raw.keys[1].joints["Hips"].translation = Vec3(0, 1e-20, 0);
+  EXPECT_EQ(error_of(raw), "");
+}
+
 } // namespace

@@ -203,6 +203,16 @@ TEST(Interpolation, CubicEndsOfAClampedClipAreAtRest) {
   EXPECT_NEAR(clip.velocities[1].angular.x(), 1.0, 1e-15);
 }
 
+TEST(Interpolation, CubicStaysFiniteBetweenKeysThatAreAsNearAsNumbersCanBe) {
+  for (const Extrapolation extrapolation : {Extrapolation::loop, Extrapolation::clamp})
+    for (const double gap : {5e-324, 1e-310, 1e-300, 1e-12}) {
+      const Clip clip = about_axis(Vec3::UnitY(), {0.0, gap, 2 * gap, 1.0}, {0.0, 1.0, 2.5, 0.0}, extrapolation,
+                                   Interpolation::cubic);
+      for (const double time : {0.0, 0.5 * gap, gap, 1.5 * gap, 2 * gap, 0.1, 0.9})
+        EXPECT_TRUE(is_finite(pose_at(clip, time)[0])) << gap << " at " << time;
+    }
+}
+
 TEST(Interpolation, CubicTurnsByHalfTurnsWithoutTrouble) {
   const Clip clip =
       about_axis(Vec3::UnitY(), {0, 1, 2, 3}, {0, k_pi, 0, k_pi}, Extrapolation::clamp, Interpolation::cubic);

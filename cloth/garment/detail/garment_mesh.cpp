@@ -21,7 +21,7 @@ void stitch(std::uint32_t inner, int inner_count, std::uint32_t outer, int outer
   for (int i = 0, o = 0; i < inner_steps || o < outer_count;) {
     // That side goes on which makes the shorter of the two diagonals.
     const bool outwards =
-        i >= inner_steps || (o < outer_count && (2 * o + 1) * inner_count <= (2 * i + 1) * outer_count);
+        i >= inner_steps || (o < outer_count && (2 * o + 1.0) * inner_count <= (2 * i + 1.0) * outer_count);
     const std::uint32_t a = at(inner, inner_count, i), b = at(outer, outer_count, o);
     if (outwards) mesh.triangles.push_back({a, b, at(outer, outer_count, ++o)});
     else mesh.triangles.push_back({a, b, at(inner, inner_count, ++i)});

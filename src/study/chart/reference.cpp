@@ -43,7 +43,7 @@ public:
   void read() {
     for (std::size_t k = 0; k < levels_.size(); ++k)
       if (const fs::path file = level_path(path_, plan_->substeps[k]); fs::exists(file))
-        levels_[k] = read_reference(file, scene_->name(), fingerprint_);
+        levels_[k] = reference_from(file, *scene_, *plan_);
   }
 
   void make(const GarmentPositions& start, int jobs) {
@@ -159,12 +159,29 @@ fs::path reference_path(const fs::path& cache, const LoadedScene& scene, const R
   return cache / fmt::format("{}-{}.json", scene.name(), reference_fingerprint(scene, plan));
 }
 
+Reference reference_from(const fs::path& file, const LoadedScene& scene, const ReferencePlan& plan) {
+  Reference reference = read_reference(file, scene.name(), reference_fingerprint(scene, plan));
+  // A checksum tells damage; a file that was made up has one that fits.
+  const auto check = [&](const char* place, const GarmentPositions& positions,
+                         const std::vector<cloth::Garment>& garments) {
+    const auto is_of = [](const std::vector<Vec3>& of, const cloth::Garment& garment) {
+      return of.size() == garment.rest_positions.size();
+    };
+    if (!std::equal(positions.begin(), positions.end(), garments.begin(), garments.end(), is_of))
+      throw InputError(file.string(), place, "positions of other garments", "those of " + scene.name());
+  };
+  check("/start", reference.start, scene.garments);
+  const Setting setting = reference_setting(scene, plan, reference.substeps);
+  check("/drape_um", reference.trajectory.drape, with_setting(scene, setting).garments);
+  return reference;
+}
+
 std::optional<Reference> obtain_reference(const LoadedScene& scene, const ReferencePlan& plan, const fs::path& cache,
                                           int jobs, const std::function<std::optional<GarmentPositions>()>& start,
                                           const std::function<bool()>& go_on) {
   const fs::path path = reference_path(cache, scene, plan);
   sweep_leftovers(cache);
-  if (fs::exists(path)) return read_reference(path, scene.name(), reference_fingerprint(scene, plan));
+  if (fs::exists(path)) return reference_from(path, scene, plan);
   fs::create_directories(cache);
   Levels levels(scene, plan, path, go_on);
   levels.read();

@@ -50,6 +50,10 @@ std::filesystem::path default_cache();
 std::filesystem::path reference_path(const std::filesystem::path& cache, const LoadedScene& scene,
                                      const ReferencePlan& plan);
 
+/// What the file has, as a truth of this scene and plan. Throws InputError as read_reference, and where its garments
+/// are not the scene's.
+Reference reference_from(const std::filesystem::path& file, const LoadedScene& scene, const ReferencePlan& plan);
+
 /// From the cache, or made and put there. Levels that are done are kept beside it until the last one is, so that an
 /// interrupted call goes on where it stopped. `jobs` levels are made side by side. `start` is asked for only where
 /// something has to be made; nothing when it gives nothing or after an interrupt (whose flag `go_on` reads). Throws

@@ -5,6 +5,8 @@
 #include "src/base/content_hash.h"
 
 #include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace tutu::app {
 namespace {
@@ -100,6 +102,13 @@ Trajectory::Moment moment_of(const JsonValue& json) {
   return moment;
 }
 
+/// Particles of each garment: what all positions of one reference have in common.
+std::vector<std::size_t> sizes_of(const GarmentPositions& garments) {
+  std::vector<std::size_t> sizes;
+  for (const std::vector<Vec3>& positions : garments) sizes.push_back(positions.size());
+  return sizes;
+}
+
 } // namespace
 
 void write_reference(const Reference& r, const std::filesystem::path& file) {
@@ -127,16 +136,12 @@ void write_reference(const Reference& r, const std::filesystem::path& file) {
   write_file(file, json.dump() + "\n");
 }
 
-Reference read_reference(const std::filesystem::path& file, const std::string& scene, const std::string& fingerprint) {
-  const JsonValue json = JsonValue::read(file);
+Reference reference_of(const JsonValue& json) {
   json.only_keys({"scene", "fingerprint", "substeps", "resolution", "frames", "settle", "held", "every", "refinements",
                   "start", "moments", "drape_um", "checksum"});
   Reference r;
   r.scene = json.at("scene").string();
   r.fingerprint = json.at("fingerprint").string();
-  if (r.fingerprint != fingerprint)
-    throw json.at("fingerprint")
-        .error("a reference of " + r.scene + " (" + r.fingerprint + ")", "that of " + scene + " (" + fingerprint + ")");
   constexpr int k_many = 1 << 30;
   r.substeps = json.at("substeps").integer_in(1, k_many);
   r.resolution = json.at("resolution").positive();
@@ -151,6 +156,22 @@ Reference read_reference(const std::filesystem::path& file, const std::string& s
   r.start = positions_of(json.at("start"), true);
   for (const JsonValue& item : json.at("moments").items()) r.trajectory.moments.push_back(moment_of(item));
   r.trajectory.drape = positions_of(json.at("drape_um"), false);
+  const std::vector<std::size_t> sizes = sizes_of(r.trajectory.drape);
+  if (r.start.size() != sizes.size())
+    throw json.at("start").error(std::to_string(r.start.size()) + " garments", std::to_string(sizes.size()));
+  const std::vector<JsonValue> moments = json.at("moments").items();
+  for (std::size_t m = 0; m < moments.size(); ++m)
+    if (const auto found = sizes_of(r.trajectory.moments[m].positions); found != sizes)
+      throw moments[m].at("positions_um").error(fmt::format("{} particles", found), fmt::format("{}", sizes));
+  return r;
+}
+
+Reference read_reference(const std::filesystem::path& file, const std::string& scene, const std::string& fingerprint) {
+  const JsonValue json = JsonValue::read(file);
+  if (const JsonValue found = json.at("fingerprint"); found.string() != fingerprint)
+    throw found.error("a reference of " + json.at("scene").string() + " (" + found.string() + ")",
+                      "that of " + scene + " (" + fingerprint + ")");
+  Reference r = reference_of(json);
   const std::string checksum = checksum_of(r);
   if (json.at("checksum").string() != checksum)
     throw json.at("checksum").error(checksum + " of what is in the file; delete the file to have it made anew");

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
+#include <map>
 
 namespace tutu::app {
 namespace {
@@ -45,13 +46,21 @@ void set_value(Setting& s, const std::string& column, const JsonValue& json) {
   else if (column == "threads") s.threads = json.integer_in(1, k_most_threads);
 }
 
-/// Adds it unless it is there; one that is there gets the name.
-void add(std::vector<Setting>& settings, Setting setting) {
-  const auto same = [&](const Setting& other) { return setting_values(other) == setting_values(setting); };
-  const auto found = std::find_if(settings.begin(), settings.end(), same);
-  if (found == settings.end()) settings.push_back(std::move(setting));
-  else if (found->name.empty()) found->name = setting.name;
-}
+/// Settings, none of them twice.
+class Settings {
+public:
+  /// Adds it unless it is there; one that is there gets the name.
+  void add(Setting setting) {
+    const auto [place, is_new] = places_.try_emplace(setting_values(setting), settings_.size());
+    if (is_new) settings_.push_back(std::move(setting));
+    else if (Setting& there = settings_[place->second]; there.name.empty()) there.name = setting.name;
+  }
+  std::vector<Setting> take() { return std::move(settings_); }
+
+private:
+  std::vector<Setting> settings_;
+  std::map<SettingValues, std::size_t> places_;
+};
 
 Setting unnamed(const RunSettings& scene) {
   Setting setting = own_setting(scene);
@@ -59,8 +68,8 @@ Setting unnamed(const RunSettings& scene) {
   return setting;
 }
 
-/// Every combination of the values of one object.
-std::vector<Setting> product_of(const JsonValue& json, const RunSettings& scene) {
+/// Every combination of the values of one object, `most` of them.
+std::vector<Setting> product_of(const JsonValue& json, const RunSettings& scene, std::size_t most) {
   std::vector<Setting> settings = {unnamed(scene)};
   if (const auto name = json.find("name")) settings.front().name = name->string();
   for (const auto& [key, value] : json.members()) {
@@ -70,12 +79,13 @@ std::vector<Setting> product_of(const JsonValue& json, const RunSettings& scene)
       throw value.error("unknown key \"" + key + "\"", fmt::format("name or one of: {}", fmt::join(columns, ", ")));
     const std::vector<JsonValue> values = value.is_array() ? value.items() : std::vector<JsonValue>{value};
     if (values.empty()) throw value.error("an empty grid: no value", "at least one value");
+    if (values.size() > most / settings.size())
+      throw value.error(fmt::format("{} values, {} times", values.size(), settings.size()),
+                        fmt::format("at most {} settings in all of the file", k_most_settings));
     std::vector<Setting> more;
     for (const Setting& setting : settings)
       for (const JsonValue& one : values) set_value(more.emplace_back(setting), key, one);
     settings = std::move(more);
-    if (settings.size() > k_most_settings)
-      throw json.error(std::to_string(settings.size()) + " settings", fmt::format("at most {}", k_most_settings));
   }
   return settings;
 }
@@ -87,10 +97,16 @@ std::vector<Setting> read_settings(const fs::path& file, const RunSettings& scen
   json.only_keys({"settings"});
   const std::vector<JsonValue> grids = json.at("settings").items();
   if (grids.empty()) throw json.at("settings").error("an empty grid of settings", "at least one object");
-  std::vector<Setting> settings = {own_setting(scene)};
-  for (const JsonValue& grid : grids)
-    for (Setting& setting : product_of(grid, scene)) add(settings, std::move(setting));
-  return settings;
+  Settings settings;
+  settings.add(own_setting(scene));
+  std::size_t asked = 0; // of the file, whether they are there already or not
+  for (const JsonValue& grid : grids) {
+    if (asked == k_most_settings) throw grid.error(fmt::format("at most {} settings before it", k_most_settings - 1));
+    std::vector<Setting> product = product_of(grid, scene, k_most_settings - asked);
+    asked += product.size();
+    for (Setting& setting : product) settings.add(std::move(setting));
+  }
+  return settings.take();
 }
 
 Setting report_setting(const RunSettings& scene, const std::string& proxies) {
@@ -105,11 +121,12 @@ Setting report_setting(const RunSettings& scene, const std::string& proxies) {
 }
 
 std::vector<Setting> builtin_settings(const SceneDescription& scene, bool quick) {
-  std::vector<Setting> settings = {own_setting(scene.settings)};
+  Settings settings;
+  settings.add(own_setting(scene.settings));
   const auto vary = [&](const std::function<void(Setting&)>& change) {
     Setting setting = unnamed(scene.settings);
     change(setting);
-    add(settings, std::move(setting));
+    settings.add(std::move(setting));
   };
   const auto fraction = [&](double times) {
     return std::max(1, static_cast<int>(times * scene.settings.substeps + 0.5));
@@ -153,16 +170,16 @@ std::vector<Setting> builtin_settings(const SceneDescription& scene, bool quick)
       s.substeps = fraction(2);
     });
   }
-  if (!scene.proxies) return settings;
+  if (!scene.proxies) return settings.take();
   const fs::path hand = scene.proxies->parent_path() / (scene.proxies->stem().string() + "-hand.json");
-  if (!fs::is_regular_file(hand)) return settings;
+  if (!fs::is_regular_file(hand)) return settings.take();
   for (const double times : {1.0 / 3, 1.0})
     vary([&](Setting& s) {
       s.proxies = hand.string();
       s.substeps = fraction(times);
     });
-  add(settings, report_setting(scene.settings, hand.string()));
-  return settings;
+  settings.add(report_setting(scene.settings, hand.string()));
+  return settings.take();
 }
 
 std::string fitted_proxies(int count) { return fmt::format("{}{}", k_fitted, count); }

@@ -58,6 +58,18 @@ TEST(Disc, IsRoundFlatAndOfNearlyEquilateralTriangles) {
     }
 }
 
+TEST(Disc, ANarrowRingOfVeryManyParticlesIsStitchedAllAround) {
+  const int around = 60'000; // the product of two such numbers is more than an int holds
+  const Garment garment = build_garment(round_sheet(1, 1.0 - 6.0 / around));
+  EXPECT_NEAR(garment.particle_count(), 2 * around, 10);
+  EXPECT_EQ(static_cast<int>(garment.triangles.size()), garment.particle_count());
+  double longest = 0.0;
+  for (const auto& t : garment.triangles)
+    for (int k = 0; k < 3; ++k)
+      longest = std::max(longest, (garment.rest_positions[t[k]] - garment.rest_positions[t[(k + 1) % 3]]).norm());
+  EXPECT_LT(longest, 2.0 * 0.15 * 6.0 / around); // twice the ring's width
+}
+
 TEST(Disc, PulledBothWaysItAnswersAsAnIsotropicSheet) {
   // Springs along equilateral triangles: plane stress with Poisson ratio 1/3; equal strain e both ways costs
   // k e^2 / (1 - 1/3) per area.

@@ -131,6 +131,23 @@ TEST(Bvh, WhatIsMalformedIsToldWithItsLine) {
     EXPECT_NE(error_of(whole.substr(0, length)), "") << length; // never a crash, never half a take
 }
 
+TEST(Bvh, FramesThatNeedNoNumbersAreRefusedHoweverMany) {
+  EXPECT_THAT(error_of("HIERARCHY ROOT A { OFFSET 0 1 0 CHANNELS 0 JOINT B { OFFSET 0 1 0 CHANNELS 0 } }\n"
+                       "MOTION Frames: 10000000 Frame Time: 0.1"),
+              HasSubstr("take.bvh: line 1: found a skeleton without channels, expected one that moves"));
+}
+
+TEST(Bvh, ASkeletonOfNearlyNoHeightIsRefusedBeforeItsTravelIsBeyondAllBounds) {
+  const auto take = [](const char* height, const char* travel) {
+    return std::string("HIERARCHY ROOT A { OFFSET 0 0 0 CHANNELS 1 Xposition End Site { OFFSET 0 ") + height +
+           " 0 } }\nMOTION Frames: 1 Frame Time: 0.1 " + travel;
+  };
+  EXPECT_EQ(error_of(take("0.001", "1000")), "");
+  for (const char* travel : {"1e9", "0"})
+    EXPECT_THAT(error_of(take("1e-310", travel)), HasSubstr("expected one that stands along +Y")) << travel;
+  EXPECT_THAT(error_of(take("1e-300", "-1e9")), HasSubstr("expected one that stands along +Y"));
+}
+
 TEST(Bvh, ACarnegieMellonTakeOnTheMannequin) {
   Mocap take = read_bvh(test::assimp_model("BVH/01_01.bvh"), {.rest_frame = 0, .from = 1.0 / 120.0, .to = 12.0});
   EXPECT_EQ(take.skeleton.joint_count(), 31);

@@ -131,6 +131,28 @@ TEST_F(ReferenceRuns, KnowsWhatItDependsOn) {
   EXPECT_NE(fingerprint(), before);
 }
 
+TEST_F(ReferenceRuns, MadeUpOfOtherGarmentsItIsRefusedThoughItsChecksumFits) {
+  const Reference whole = *obtain();
+  const fs::path file = reference_path(cache_, scene_, plan_);
+  const auto refused = [&](const std::function<void(Reference&)>& change, const std::string& message) {
+    Reference other = whole;
+    change(other);
+    write_reference(other, file);
+    expect_refused(HasSubstr(message));
+  };
+  refused([](Reference& r) { r.trajectory.moments[1].positions.clear(), r.trajectory.moments[1].touching.clear(); },
+          "/moments/1/positions_um: found [] particles, expected [81]");
+  refused([](Reference& r) { r.start[0].pop_back(); }, "/start: found positions of other garments");
+  refused([](Reference& r) { r.start.clear(); }, "/start: found 0 garments, expected 1");
+  refused(
+      [](Reference& r) {
+        for (Trajectory::Moment& moment : r.trajectory.moments)
+          moment.positions[0].pop_back(), moment.touching[0].pop_back();
+        r.trajectory.drape[0].pop_back();
+      },
+      "/drape_um: found positions of other garments, expected those of small");
+}
+
 TEST_F(ReferenceRuns, DamagedItIsToldWithItsPlace) {
   ASSERT_TRUE(obtain().has_value());
   const fs::path file = reference_path(cache_, scene_, plan_);

@@ -8,6 +8,8 @@
 #include "src/study/chart/settings_grid.h"
 #include "tests/support/paths.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <numeric>
 #include <random>
@@ -63,6 +65,21 @@ TEST_F(SettingsGrid, EmptyOrUnknownIsRefusedWithItsPlace) {
   expect_refused(R"({"settings": [{"colour": 3}]})", HasSubstr("unknown key \"colour\""));
   expect_refused(R"({"settings": [{"proxies": "nowhere.json"}]})", HasSubstr("no file"));
   expect_refused("{}", HasSubstr("settings"));
+}
+
+TEST_F(SettingsGrid, TooManyAreRefusedBeforeTheyAreMade) {
+  const auto list = [](int count, int most) {
+    std::vector<int> values;
+    for (int k = 0; k < count; ++k) values.push_back(1 + k % most);
+    return fmt::format("[{}]", fmt::join(values, ", "));
+  };
+  const std::string five_thousand = list(5000, 10000), hundred = list(100, 100);
+  expect_refused(fmt::format(R"({{"settings": [{{"passes": {}, "substeps": {}}}]}})", hundred, five_thousand),
+                 HasSubstr("/settings/0/substeps: found 5000 values, 100 times, expected at most 10000 settings"));
+  const std::string grid = fmt::format(R"({{"passes": {}, "substeps": {}}})", hundred, hundred);
+  expect_refused(fmt::format(R"({{"settings": [{}, {{}}]}})", grid),
+                 HasSubstr("/settings/1: found {}, expected at most 9999 settings before it"));
+  EXPECT_EQ(read(fmt::format(R"({{"settings": [{}]}})", grid)).size(), 10'000u); // in no time: the scene's is in it
 }
 
 TEST_F(SettingsGrid, ANumberOfProxiesIsToBeFitted) {
