@@ -87,7 +87,9 @@ fs::path mesh_file(const JsonValue& name) {
 
 MeshShape read_mesh(const JsonValue& json) {
   json.only_keys({"file", "scale", "pressed"});
-  rig::TriangleSurface surface = rig::import_surface(mesh_file(json.at("file")));
+  const JsonValue name = json.at("file");
+  const fs::path file = mesh_file(name);
+  rig::TriangleSurface surface = rig::import_surface(file);
   MeshShape mesh{std::move(surface.positions), std::move(surface.triangles)};
   const auto scale = json.find("scale");
   const double metres = scale ? scale->positive() : 1.0;

@@ -66,7 +66,7 @@ TEST_P(FuzzSeeds, CutAnywhereTheyAreReadOrRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, FuzzSeeds, ::testing::ValuesIn(k_targets),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& target) { return std::string(target.param.name); });
 
 TEST(FuzzTargets, EveryFolderOfSeedsHasOne) {
   std::vector<std::string> folders, names;
