@@ -60,7 +60,8 @@ Divergence trouble_at(const Moment& moment, Trouble trouble, int particle) {
     // A pin has the velocity that took it to where it is.
     divergence.held = Divergence::Held{pin.particle, now.velocities[pin.particle].norm() * moment.h};
   }
-  std::vector<Vec3> forces(now.positions.size(), Vec3::Zero());
+  thread_local std::vector<Vec3> forces; // kept: a recovery in the middle of a run allocates nothing
+  forces.assign(now.positions.size(), Vec3::Zero());
   add_spring_forces(garment, now.positions, forces);
   for (std::size_t i = 0; i < forces.size(); ++i)
     if (const double force = forces[i].norm(); std::isfinite(force) && force > divergence.strongest_force) {
@@ -106,7 +107,9 @@ std::optional<Divergence> find_lost(const Moment& moment) {
 std::optional<Divergence> find_overlong(const Moment& moment, const WatchedEdges& watched) {
   const Garment& garment = moment.garment;
   const auto &x = moment.particles.positions, &v = moment.particles.velocities;
-  const std::vector<std::uint8_t> pinned = pinned_flags(garment);
+  thread_local std::vector<std::uint8_t> pinned; // kept, as above
+  pinned.assign(x.size(), 0);
+  for (const Pin& pin : garment.pins) pinned[pin.particle] = 1;
   struct Way {
     Trouble trouble = Trouble::long_edge;
     int from = -1, to = -1;

@@ -1,4 +1,5 @@
 // What the pose editor left at its last end: found, edited, saved and found again. No OpenGL.
+#include "rig/error.h"
 #include "src/view/pose/pose_files.h"
 #include "tests/fuzz/target.h"
 
@@ -15,7 +16,7 @@ void fuzz_autosave(std::string_view input) {
     for (const auto& entry : std::filesystem::directory_iterator(scratch()))
       if (entry.path().filename().string().find(".damaged-") != std::string::npos)
         std::filesystem::remove(entry.path());
-    return;
+    throw tutu::InputError("", "", trouble, "an autosave"); // as the other readers do
   }
   require_poses(state->pose, "the pose in hand is finite");
 

@@ -133,11 +133,7 @@ TEST(MemoryLimit, ABvhWhoseFramesCostNothingToWriteIsRefused) {
   write_file(folder / "a.bvh", text + "}\nMOTION\nFrames: 1000000\nFrame Time: 0.01\n");
   const InputError error = error_of([&] { rig::read_bvh(folder / "a.bvh"); });
   EXPECT_EQ(error.file(), (folder / "a.bvh").string());
-  EXPECT_THAT(error.what(), HasSubstr("1,000,000 frames of 201 joints, about"));
-  rig::BvhOptions part;
-  part.from = 10.0;
-  part.to = 11.0;
-  EXPECT_EQ(rig::read_bvh(folder / "a.bvh", part).clip.times.size(), 101u) << "what is not kept does not count";
+  EXPECT_THAT(error.what(), HasSubstr("a skeleton without channels"));
   std::filesystem::remove_all(folder);
 }
 

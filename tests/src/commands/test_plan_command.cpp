@@ -102,7 +102,7 @@ TEST_F(PlanCommand, BadInputIsToldInOneMessage) {
   told({"plan", scene_, "--error-mm", "2", "--error", "beauty"}, "beauty");
   told({"plan", scene_, "--error-mm", "2", "--ms", "0"}, "--ms");
   told({"plan", (folder_ / "none.json").string(), "--error-mm", "2"}, "none.json");
-  told({"plan", scene_, "--error-mm", "2", "-o", scene_}, "another file than the scene itself");
+  told({"plan", scene_, "--error-mm", "2", "-o", scene_}, "it would be overwritten");
   told({"plan", scene_, "--error-mm", "2", "-o", (folder_ / "no" / "x.json").string()}, "no folder");
   write_file(folder_ / "bare.json", R"({"character": "body.dae", "motion": "small-motion.json"})");
   told({"plan", (folder_ / "bare.json").string(), "--error-mm", "2"}, "garments");

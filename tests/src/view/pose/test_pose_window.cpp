@@ -299,9 +299,14 @@ TEST_F(PoseProgram, BadInputIsOneMessageAndStatus2) {
   expect_refused({dancer_, "--out", clip(), "--joint", "Tail"}, HasSubstr("--joint: found Tail"));
   expect_refused({dancer_, "--out", clip(), "--limits", file("l.json", R"({"limits": [{"joint": "Tail"}]})")},
                  HasSubstr("l.json: /limits/0"));
-  // An autosave of another character is not thrown away unasked.
-  file("steps.autosave.json", R"({"keys": [{"time": 0, "joints": {"Tail": {}}}]})");
-  expect_refused({dancer_, "--out", clip()}, HasSubstr("steps.autosave.json: key 0, joint Tail"));
+}
+
+TEST_F(PoseProgram, AnAutosaveOfAnotherCharacterIsPutAsideAndSaid) {
+  const std::string text = R"({"keys": [{"time": 0, "joints": {"Tail": {}}}]})";
+  file("steps.autosave.json", text);
+  const test::Outcome outcome = test::run_program({"pose", dancer_, "--out", clip()}, "unset DISPLAY WAYLAND_DISPLAY;");
+  EXPECT_THAT(outcome.output, HasSubstr("steps.autosave.json: key 0, joint Tail"));
+  EXPECT_EQ(read_file(folder_ / "steps.autosave.damaged-1.json"), text) << "nothing of it is lost";
 }
 
 TEST_F(PoseProgram, WithoutADisplaySaysSo) { expect_refused({dancer_, "--out", clip()}, HasSubstr("no display")); }
