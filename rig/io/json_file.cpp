@@ -56,9 +56,9 @@ std::string place_of_number(std::string_view text, const std::string& reason) {
 }
 
 /// Bytes that a value takes in the tree, with what readers of it take for a while (JsonValue::items), at the most: of a
-/// number or word, of an array or object besides its values, of a member besides its value. Measured as the peak of the
-/// process (tests/rig/io/test_memory_limit.cpp does it again).
-constexpr double k_bytes_a_value = 72.0, k_bytes_a_container = 288.0, k_bytes_a_member = 288.0;
+/// number or word, of an array or object besides its values, of a member besides its value. Measured as the peak of
+/// the process.
+constexpr double k_bytes_a_value = 72.0, k_bytes_a_container = 256.0, k_bytes_a_member = 288.0;
 
 /// What parsing the text will take, and what it is made of, by what separates its values: counted in one pass. Comments
 /// count as what they look like.
