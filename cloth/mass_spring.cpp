@@ -41,6 +41,7 @@ bool MassSpring::renew_forces() {
 
 std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
+  if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
   contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
   time = lap(time, times_.broad);
@@ -50,10 +51,6 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
     Vec3& v = particles_.velocities[i];
     v -= v.dot(contact.normal) * contact.normal;
   };
-  // What is no number would have spread to its neighbours by the end of the first substep.
-  if (!is_in_world(particles_))
-    if (const auto lost = find_lost({*garment_, 0, h, particles_}); lost && lost->trouble == Trouble::no_number)
-      return *lost;
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};
     const double s = static_cast<double>(substep + 1) / input.substeps;
@@ -63,14 +60,14 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
     if (!is_in_world(particles_)) {
       std::vector<Vec3> starts = particles_.positions;
       for (std::size_t i = 0; i < starts.size(); ++i) starts[i] -= h * particles_.velocities[i];
-      return find_trouble({*garment_, substep, h, particles_, starts}, {});
+      return find_trouble({*garment_, pinned_, substep, h, particles_, starts}, {});
     }
     contacts_.for_each_contact(query, s, pinned_, particles_, stop_at_surface);
     time = lap(time, times_.contact);
     close_seams(*garment_, pinned_, particles_);
     const bool whole = renew_forces();
     time = lap(time, times_.cloth);
-    if (!whole) return find_trouble({*garment_, substep, h, particles_}, {});
+    if (!whole) return find_trouble({*garment_, pinned_, substep, h, particles_, {}, forces_}, {});
   }
   return std::nullopt;
 }

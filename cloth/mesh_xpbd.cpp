@@ -140,6 +140,7 @@ template <class Scalar> bool MeshXpbd<Scalar>::is_broken() const {
 template <class Scalar>
 std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
+  if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
   contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
   time = lap(time, times_.broad);
@@ -156,7 +157,7 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};
     const double s = static_cast<double>(substep + 1) / input.substeps;
-    const Moment now{*garment_, substep, h, particles_, before_};
+    const Moment now{*garment_, pinned_, substep, h, particles_, before_};
     predict(input, s, h);
     solve_constraints(h, substep % 2 == 0);
     close_seams(*garment_, pinned_, particles_);

@@ -40,7 +40,7 @@ void draw_in_edges(const Garment& garment, std::span<Vec3> positions, const Fram
 /// After a recovery the next frames begin with the substeps that carried it; every k_calm_frames good frames halve them
 /// until they are what is asked for. All of it depends on the run so far only: same input, same bits.
 ///
-/// Memory is allocated once, except for mending.
+/// Memory is allocated once, except for mending and for finding out what went wrong.
 class GuardedSolver final : public Solver {
 public:
   /// The garment is the solver's, and must outlive it.

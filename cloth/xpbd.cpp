@@ -42,6 +42,7 @@ public:
     sheet_.set(particles_.positions, particles_.velocities);
     contacts_.forget();
     if (self_) self_->forget();
+    unusable_ = find_unusable(*garment_, pinned_, particles_);
   }
 
   std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
@@ -85,6 +86,7 @@ private:
   WovenContacts<T> contacts_; ///< of the hybrid backend
   ContactSearch search_;      ///< of the others
   bool asks_each_ = false;
+  std::optional<Divergence> unusable_;  ///< of the state that was restored last
   std::vector<Vec3> pins_;              ///< where they are to the last bit; none before the first frame
   std::unique_ptr<SelfCollision> self_; ///< where asked for, with
   std::vector<Vec3> start_, now_;       ///< room for the positions it works on
@@ -146,7 +148,7 @@ Divergence Xpbd<T>::diverged(const FrameInput& input, const Substep& at, std::op
   sheet_.get_starts(starts);
   const std::vector<Tether> tethers = sheet_.view().tethers.length ? build_tethers(*garment_) : std::vector<Tether>{};
   const double rounding = std::is_same_v<T, float> ? 1e-4 : 1e-9; // pins are shown to the last bit, and solved in T
-  const Moment now{*garment_, at.number, at.h, particles(), speed ? std::span<const Vec3>{} : starts};
+  const Moment now{*garment_, pinned_, at.number, at.h, particles(), speed ? std::span<const Vec3>{} : starts};
   return find_trouble(now, {true, false, rounding, tethers}, speed);
 }
 
@@ -178,6 +180,7 @@ template <class T> Divergence Xpbd<T>::diverged_at_end(const FrameInput& input, 
 
 template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
+  if (unusable_) return *unusable_;
   auto time = Clock::now();
   asks_each_ = query.name() != proxies::k_backend_names[static_cast<std::size_t>(proxies::Backend::hybrid)];
   sheet_.follow();

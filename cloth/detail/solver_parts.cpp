@@ -60,9 +60,12 @@ Divergence trouble_at(const Moment& moment, Trouble trouble, int particle) {
     // A pin has the velocity that took it to where it is.
     divergence.held = Divergence::Held{pin.particle, now.velocities[pin.particle].norm() * moment.h};
   }
-  thread_local std::vector<Vec3> forces; // kept: a recovery in the middle of a run allocates nothing
-  forces.assign(now.positions.size(), Vec3::Zero());
-  add_spring_forces(garment, now.positions, forces);
+  std::vector<Vec3> worked_out;
+  if (moment.forces.empty()) {
+    worked_out.assign(now.positions.size(), Vec3::Zero());
+    add_spring_forces(garment, now.positions, worked_out);
+  }
+  const std::span<const Vec3> forces = moment.forces.empty() ? worked_out : moment.forces;
   for (std::size_t i = 0; i < forces.size(); ++i)
     if (const double force = forces[i].norm(); std::isfinite(force) && force > divergence.strongest_force) {
       divergence.strongest_force = force;
@@ -95,8 +98,11 @@ std::optional<Divergence> find_lost(const Moment& moment) {
   if (const auto i = worst_particle(moment, began_as_none)) return trouble_at(moment, Trouble::no_number, *i);
   if (const auto i = worst_particle(moment, [&](int k) { return x[k].allFinite() ? 0.0 : 1.0; }))
     return trouble_at(moment, Trouble::no_number, *i);
-  const auto out_since_start = [&](int i) { return is_in_world(began(i)) ? 0.0 : beyond_world(x[i]); };
-  if (const auto i = worst_particle(moment, out_since_start)) return trouble_at(moment, Trouble::out_of_world, *i);
+  if (const auto i = worst_particle(moment, [&](int k) { return beyond_world(began(k)); })) {
+    Divergence divergence = trouble_at(moment, Trouble::out_of_world, *i);
+    if (is_in_world(x[*i])) divergence.position = began(*i); // pulled back in since, and others out in its place
+    return divergence;
+  }
   if (const auto i = worst_particle(moment, [&](int k) { return beyond_world(x[k]); }))
     return trouble_at(moment, Trouble::out_of_world, *i);
   if (const auto i = worst_particle(moment, [&](int k) { return beyond_world(v[k]); }))
@@ -104,12 +110,19 @@ std::optional<Divergence> find_lost(const Moment& moment) {
   return std::nullopt;
 }
 
+std::optional<Divergence> find_unusable(const Garment& garment, std::span<const std::uint8_t> pinned,
+                                        const Particles& particles) {
+  constexpr double k_farthest = 1e12; // m, m/s: what queries take
+  const auto is_usable = [](const Vec3& v) { return v.cwiseAbs().maxCoeff() <= k_farthest && v.allFinite(); };
+  bool usable = true;
+  for (int i = 0; i < particles.count(); ++i)
+    usable = usable && is_usable(particles.positions[i]) && is_usable(particles.velocities[i]);
+  return usable ? std::nullopt : find_lost({garment, pinned, 0, 0.0, particles});
+}
+
 std::optional<Divergence> find_overlong(const Moment& moment, const WatchedEdges& watched) {
   const Garment& garment = moment.garment;
   const auto &x = moment.particles.positions, &v = moment.particles.velocities;
-  thread_local std::vector<std::uint8_t> pinned; // kept, as above
-  pinned.assign(x.size(), 0);
-  for (const Pin& pin : garment.pins) pinned[pin.particle] = 1;
   struct Way {
     Trouble trouble = Trouble::long_edge;
     int from = -1, to = -1;
@@ -124,7 +137,7 @@ std::optional<Divergence> find_overlong(const Moment& moment, const WatchedEdges
   };
   for (const Spring& spring : garment.springs) {
     if (spring.kind == SpringKind::bend || (spring.kind == SpringKind::shear && !watched.shear)) continue;
-    if (!watched.between_pins && pinned[spring.i] && pinned[spring.j]) continue;
+    if (!watched.between_pins && moment.pinned[spring.i] && moment.pinned[spring.j]) continue;
     measure(Trouble::long_edge, spring.i, spring.j, spring.rest_length);
   }
   for (const Tether& tether : watched.tethers)

@@ -26,16 +26,23 @@ void close_seams(const Garment& garment, std::span<const std::uint8_t> pinned, P
 /// A substep in which something is wrong, for finding out what.
 struct Moment {
   const Garment& garment;
+  std::span<const std::uint8_t> pinned; ///< one a particle
   int substep = 0;
   double h = 0.0;                    ///< s
   const Particles& particles;        ///< as they were when it was noticed
   std::span<const Vec3> starts = {}; ///< where they were when the substep began; empty where that is not known
+  std::span<const Vec3> forces = {}; ///< N, of the springs at these positions; empty: worked out where asked for
 };
 
 /// What is_in_world() objects to: the first particle whose place or velocity is no number, else the one that is the
-/// farthest out of the world, else the fastest beyond it. Those that were so when the substep began come before those
-/// it has spread to since.
+/// farthest out of the world, else the fastest beyond it. What was so when the substep began comes before what it has
+/// spread to since.
 std::optional<Divergence> find_lost(const Moment& moment);
+
+/// Before a frame begins: a place or a velocity that is no number, or that no collision query would take. (A state that
+/// was restored may have any; a step that went well leaves none.)
+std::optional<Divergence> find_unusable(const Garment& garment, std::span<const std::uint8_t> pinned,
+                                        const Particles& particles);
 
 /// Where a solver looks for what is too long, besides structural springs.
 struct WatchedEdges {

@@ -177,6 +177,7 @@ Mocap read_bvh(const std::filesystem::path& file, const BvhOptions& options) {
   words.expect("MOTION");
   words.expect("Frames:");
   const int frames = words.count(10'000'000);
+  if (frames == 0) throw words.error("no frames", "at least one");
   words.expect("Frame");
   words.expect("Time:");
   const double step = words.number();

@@ -56,9 +56,9 @@ std::string place_of_number(std::string_view text, const std::string& reason) {
 }
 
 /// Bytes that a value takes in the tree, with what readers of it take for a while (JsonValue::items), at the most: of a
-/// number or word, of an array or object besides its values, of a member besides its value. Measured as the peak of
-/// the process.
-constexpr double k_bytes_a_value = 72.0, k_bytes_a_container = 256.0, k_bytes_a_member = 288.0;
+/// value, of a text besides, of an array or object besides its values, of a member besides its value. Measured as the
+/// peak of the process (tests/rig/io/test_memory_limit.cpp does it again).
+constexpr double k_bytes_a_value = 80.0, k_bytes_a_text = 64.0, k_bytes_a_container = 288.0, k_bytes_a_member = 288.0;
 
 /// What parsing the text will take, and what it is made of, by what separates its values: counted in one pass. Comments
 /// count as what they look like.
@@ -67,20 +67,70 @@ struct Size {
   std::uint64_t values = 0;
 };
 Size size_of(std::string_view text) {
-  std::uint64_t values = 1, containers = 0, members = 0;
+  std::uint64_t values = 1, quotes = 0, containers = 0, members = 0;
   bool in_string = false;
   for (std::size_t k = 0; k < text.size(); ++k) {
     const char c = text[k];
-    if (c == '"') in_string = !in_string;
-    else if (in_string) k += c == '\\'; // what follows means nothing
+    if (c == '"') {
+      in_string = !in_string;
+      ++quotes;
+    } else if (in_string) k += c == '\\'; // what follows means nothing
     else if (c == ',') ++values;
     else if (c == ':') ++members;
     else if (c == '[' || c == '{') ++containers;
   }
-  return {k_bytes_a_value * static_cast<double>(values) + k_bytes_a_container * static_cast<double>(containers) +
-              k_bytes_a_member * static_cast<double>(members) + static_cast<double>(text.size()),
+  return {k_bytes_a_value * static_cast<double>(values) + k_bytes_a_text * static_cast<double>(quotes / 2) +
+              k_bytes_a_container * static_cast<double>(containers) + k_bytes_a_member * static_cast<double>(members) +
+              static_cast<double>(text.size()),
           values};
 }
+
+/// What the parser does not object to: nesting without end, a key twice. (Before it builds anything, and not from its
+/// own callback, which looks through all of an array after each object in it.)
+class Checks final : public nlohmann::json_sax<json> {
+public:
+  explicit Checks(const std::string& file) : file_(file) {}
+
+  bool start_object(std::size_t) override {
+    keys_.emplace_back();
+    return deeper();
+  }
+  bool end_object() override {
+    keys_.pop_back();
+    --depth_;
+    return true;
+  }
+  bool start_array(std::size_t) override { return deeper(); }
+  bool end_array() override {
+    --depth_;
+    return true;
+  }
+  bool key(std::string& name) override {
+    if (!keys_.back().insert(name).second)
+      throw InputError(file_, "key \"" + name + "\"", "it twice in one object", "it once");
+    return true;
+  }
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const std::string&) override { return true; }
+  bool string(std::string&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  /// Told by the parser that builds the tree.
+  bool parse_error(std::size_t, const std::string&, const json::exception&) override { return false; }
+
+private:
+  bool deeper() {
+    constexpr int k_deepest = 64; // far deeper than any of our files; keeps a hostile file off the stack
+    if (++depth_ > k_deepest) throw InputError(file_, "", "more than 64 levels of nesting", "at most 64");
+    return true;
+  }
+
+  const std::string& file_;
+  std::vector<std::set<std::string>> keys_; ///< of the objects that are open
+  int depth_ = 0;
+};
 
 } // namespace
 
@@ -96,19 +146,10 @@ JsonValue JsonValue::parse(std::string_view text, std::string name) {
   const Size size = size_of(text);
   check_memory(size.bytes, document->file, "", "JSON of " + with_commas(size.values) + " values");
 
-  constexpr int k_deepest = 64; // far deeper than any of our files; keeps a hostile file off the stack
-  std::vector<std::set<std::string>> open_objects;
-  const json::parser_callback_t check = [&](int depth, json::parse_event_t event, json& parsed) {
-    if (depth > k_deepest) throw InputError(document->file, "", "more than 64 levels of nesting", "at most 64");
-    if (event == json::parse_event_t::object_start) open_objects.emplace_back();
-    if (event == json::parse_event_t::object_end) open_objects.pop_back();
-    if (event == json::parse_event_t::key && !open_objects.back().insert(parsed.get<std::string>()).second)
-      throw InputError(document->file, "key \"" + parsed.get<std::string>() + "\"", "it twice in one object",
-                       "it once");
-    return true;
-  };
+  Checks checks(document->file);
+  json::sax_parse(text, &checks, json::input_format_t::json, true, true);
   try {
-    document->root = json::parse(text, check, true, true);
+    document->root = json::parse(text, nullptr, true, true);
   } catch (const json::parse_error& error) {
     throw InputError(document->file, place_of(text, error.byte), reason_of(error.what()), "JSON");
   } catch (const json::exception& error) {

@@ -1,8 +1,10 @@
 // How much memory something takes at the most, as the system counts it.
 #pragma once
 
+#include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <malloc.h>
 #include <string>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -21,8 +23,10 @@ inline double memory_now(const std::string& key) {
 template <class Work> double peak_memory_of(const Work& work) {
   int ends[2];
   if (::pipe(ends) != 0) return -1.0;
+  std::fflush(nullptr); // what is not written yet would be written twice
   const pid_t child = ::fork();
   if (child == 0) {
+    ::malloc_trim(0);                            // what earlier work gave back would be taken without being seen
     std::ofstream("/proc/self/clear_refs") << 5; // the peak is what there is now
     const double before = memory_now("VmRSS");
     work();

@@ -38,7 +38,7 @@ TEST(GarmentMemory, ParticlesAreCountedBeforeTheyAreMade) {
   TubeShape slit = tube(9);
   slit.seam = 0.5;
   for (const GarmentDescription& description :
-       {of(grid(7)), of(tube(9)), of(slit), of(test::mesh_sheet(6, {}, {1, 0, 0}, {0, 0, 1}))})
+       {of(grid(7)), of(tube(9)), of(slit), of(test::mesh_sheet(6, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}))})
     EXPECT_EQ(particles_of(description), build_garment(description).rest_positions.size());
   for (const int rings : {1, 2, 7, 40})
     for (const double hole : {0.0, 0.1, 0.3, 0.9}) {
@@ -71,7 +71,7 @@ TEST(GarmentMemory, WhatIsTooLargeIsRefusedWithItsPlaceAndSize) {
   EXPECT_LT(test::memory_now("VmRSS") - before, 16e6) << "nothing was allocated for it";
 
   const Variable small("TUTU_MEMORY_GIB", "0.001");
-  const MeshShape mesh = test::mesh_sheet(60, {}, {1, 0, 0}, {0, 0, 1});
+  const MeshShape mesh = test::mesh_sheet(60, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
   EXPECT_EQ(refusal_of(of(mesh)).place(), "/shape/mesh");
   EXPECT_THAT(refusal_of(of(grid(60))).found(), HasSubstr("3,600 particles"));
   EXPECT_THAT(refusal_of(of(grid(60))).expected(), HasSubstr("at most 0.001 GiB; TUTU_MEMORY_GIB=1 raises the limit"));
@@ -91,8 +91,7 @@ void simulate(const GarmentDescription& description, const SolverOptions& option
   FrameInput input;
   input.colliders = {limbs, limbs, std::nullopt};
   input.substeps = 2;
-  for (int f = 0; f < 2; ++f)
-    if (solver.step(input, *query)) std::_Exit(2); // nothing was measured
+  for (int f = 0; f < 2; ++f) (void)solver.step(input, *query); // whether it holds or helps itself does not matter
 }
 
 TEST(GarmentMemory, TheEstimateIsNotBelowTheTruth_slow) {
@@ -102,11 +101,12 @@ TEST(GarmentMemory, TheEstimateIsNotBelowTheTruth_slow) {
     SolverOptions options;
   };
   const SolverOptions precise{.double_precision = true}, springs{.solver = SolverKind::mass_spring};
+  const SolverOptions apart{.self_collision = true, .double_precision = true};
   const MeshShape mesh = test::mesh_sheet(400, {-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, 0.2);
-  double nearest = 0.0;
   for (const int colliders : {1, 36})
     for (const Case& what : {Case{"grid", of(grid(400)), {}},
                              {"grid, double", of(grid(400)), precise},
+                             {"grid, self", of(grid(400)), apart},
                              {"grid, springs", of(grid(400)), springs},
                              {"tube, double", of(tube(400)), precise},
                              {"disc", of(disc(230, 0.0)), {}},
@@ -119,10 +119,8 @@ TEST(GarmentMemory, TheEstimateIsNotBelowTheTruth_slow) {
       std::printf("%-14s %2d colliders: %5.0f bytes a particle, estimated %5.0f\n", what.name, colliders,
                   taken / particles, estimate / particles);
       EXPECT_LE(taken, 1.02 * estimate) << what.name << ", " << colliders << " colliders";
-      // Memory that earlier turns gave back is not seen as taken: it is looked at whether any turn comes near.
-      nearest = std::max(nearest, taken / estimate);
+      EXPECT_GE(taken, estimate / 4.0) << what.name << ", " << colliders << " colliders";
     }
-  EXPECT_GE(nearest, 0.25);
 }
 
 } // namespace

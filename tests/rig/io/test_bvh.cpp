@@ -121,6 +121,8 @@ TEST(Bvh, WhatIsMalformedIsToldWithItsLine) {
   EXPECT_THAT(error_of(replaced("Frames: 3", "Frames: 4")), HasSubstr("the end of the file"));
   EXPECT_THAT(error_of(replaced("Frames: 3", "Frames: 2")), HasSubstr("more numbers"));
   EXPECT_THAT(error_of(replaced("Frames: 3", "Frames: -1")), HasSubstr("line 17"));
+  EXPECT_THAT(error_of(replaced("Frames: 3", "Frames: 0")),
+              HasSubstr("line 17: found no frames, expected at least one"));
   EXPECT_THAT(error_of(replaced(".25", "0")), HasSubstr("a time above 0"));
   EXPECT_THAT(error_of(replaced("5 70", "nan 70")), HasSubstr("line 21"));
   EXPECT_THAT(error_of(replaced("JOINT Chest", "JOINT Hips")), HasSubstr("joint Hips: found the name twice"));

@@ -89,6 +89,48 @@ TEST(MemoryLimit, JsonIsCountedBeforeItIsParsed) {
   JsonValue::parse("{\"a\": \"" + std::string(1000000, ',') + "\\\"" + std::string(1000000, '[') + "\"}", "f.json");
 }
 
+/// Time that grows with the square of the size would be hours here.
+TEST(MemoryLimit, ManyObjectsAreReadInNoMoreTimeThanTheirTextIsWorth) {
+  EXPECT_EQ(JsonValue::parse(repeated("[", "{}", 1000000, "]"), "f.json").items().size(), 1000000u);
+}
+
+/// What a text of a megabyte or some takes in truth, with a list of its items as readers make it, against the estimate.
+TEST(MemoryLimit, TheEstimateOfJsonIsNotBelowTheTruth_slow) {
+  std::string members = "{", keyed = "{";
+  for (int k = 0; k < 400000; ++k) {
+    members += (k > 0 ? ",\"" : "\"") + std::to_string(k) + "\":0";
+    keyed += (k > 0 ? ",\"" : "\"") + std::string(30, 'k') + std::to_string(k) + "\":{\"rotation\":[0,0,0,1]}";
+  }
+  const std::string texts[] = {repeated("[", "0", 4000000, "]"),
+                               repeated("[", "0.12345678901234567", 2000000, "]"),
+                               repeated("[", "[0,0,0]", 800000, "]"),
+                               repeated("[", "[]", 2000000, "]"),
+                               repeated("[", "{}", 2000000, "]"),
+                               repeated("[", "[[0]]", 800000, "]"),
+                               repeated("[", R"({"a":0,"b":[1,2]})", 400000, "]"),
+                               repeated("[", '"' + std::string(20, 's') + '"', 2000000, "]"),
+                               members + "}",
+                               keyed + "}"};
+  for (const std::string& text : texts) {
+    const double estimate = [&] {
+      const Variable least(k_variable, "1e-6");
+      const std::string found = error_of([&] { JsonValue::parse(text, "f.json"); }).found();
+      return k_gib * std::stod(found.substr(found.find("about ") + 6));
+    }();
+    const double taken = test::peak_memory_of([&] {
+      const JsonValue json = JsonValue::parse(text, "f.json");
+      if (!json.is_array()) return (void)json.members();
+      const auto items = json.items();
+      for (const JsonValue& item : items)
+        if (item.is_array()) (void)item.items();
+    });
+    std::printf("%-24.24s %6.1f MB of text take %7.1f MB, estimated %7.1f\n", text.c_str(),
+                1e-6 * static_cast<double>(text.size()), 1e-6 * taken, 1e-6 * estimate);
+    EXPECT_LE(taken, 1.05 * estimate) << text.substr(0, 40);
+    EXPECT_GE(taken, estimate / 5.0) << text.substr(0, 40);
+  }
+}
+
 TEST(MemoryLimit, ABvhWhoseFramesCostNothingToWriteIsRefused) {
   const auto folder = test::scratch_folder();
   std::string text = "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 0\n";

@@ -102,6 +102,36 @@ TEST_F(HostileNames, InTheChartOfSettingsAndItsPageAreText) {
   EXPECT_EQ(page.find("<!--"), page.npos);
 }
 
+TEST_F(HostileNames, InThePageAreTextToABrowser_slow) {
+  if (std::system("command -v chromium > /dev/null") != 0) GTEST_SKIP() << "no chromium here";
+  const auto opened = [&](const std::string& page) {
+    write_file(folder_ / "page.html", page);
+    const std::string command =
+        "timeout 60 chromium --headless --no-sandbox --disable-gpu --user-data-dir=" + (folder_ / "profile").string() +
+        " --dump-dom file://" + (folder_ / "page.html").string() + " > " + (folder_ / "dom").string() + " 2> /dev/null";
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    return read_file(folder_ / "dom");
+  };
+  const std::string mark = "document.body.append('obe' + 'yed')";
+  ASSERT_NE(opened("<body><!--<b>--><script>" + mark + "</script>").find("obeyed"), std::string::npos)
+      << "the browser obeys what is a script";
+  for (const std::string opener :
+       {"</script>", "<!--<script>", "]]>", "\u003c/script>", "'\"`>", "${", "</td></style>"}) {
+    ChartPoint point;
+    point.name = point.reason = opener + "<script>" + mark + "</script><img src=x onerror=\"" + mark + "\">";
+    point.named = true;
+    Row row;
+    row.set("name", point.name);
+    row.set("ms_p99", 1.0);
+    row.set(error_axes().front().column, 1.0);
+    point.rows = {row};
+    const std::string dom =
+        opened(chart_page({point}, {}, point.name, {point.name}, SettingValues(setting_columns().size())));
+    EXPECT_EQ(dom.find("obeyed"), std::string::npos) << opener;
+    EXPECT_NE(dom.find("<circle"), std::string::npos) << "its own script ran, and drew: " << opener;
+  }
+}
+
 TEST_F(HostileNames, OfPicturesAreNames_slow) {
   if (std::system("command -v gnuplot > /dev/null") != 0) GTEST_SKIP() << "no gnuplot here";
   const Chart chart{"", "x", "y", "", {{"line", {{0.0, 1.0}}}}};
