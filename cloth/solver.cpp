@@ -15,4 +15,18 @@ std::unique_ptr<Solver> make_solver(const Garment& garment, const SolverOptions&
   return make_xpbd(garment, options);
 }
 
+SolverOptions honoured(SolverOptions options, const Garment& garment, proxies::Backend backend) {
+  const bool plain = options.solver == SolverKind::mass_spring;
+  if (plain) options.double_precision = true;
+  if (plain || garment.rows == 0) {
+    options.passes = 1;
+    options.self_collision = false;
+  }
+  if (plain || garment.rows == 0 || backend != proxies::Backend::hybrid) {
+    options.features = ContactFeatures::particles;
+    options.swept = false;
+  }
+  return options;
+}
+
 } // namespace tutu::cloth

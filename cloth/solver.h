@@ -48,4 +48,9 @@ public:
 
 std::unique_ptr<Solver> make_solver(const Garment& garment, const SolverOptions& options);
 
+/// The options as the solver makes use of them for this garment and with queries of this backend: what it does not know
+/// is what it does without. mass_spring knows particles in double alone; meshes and discs know neither threads nor
+/// self-collision; only contacts in closed form (`hybrid`) know more than particles.
+SolverOptions honoured(SolverOptions options, const Garment& garment, proxies::Backend backend);
+
 } // namespace tutu::cloth

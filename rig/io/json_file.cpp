@@ -202,12 +202,12 @@ std::vector<std::pair<std::string, JsonValue>> JsonValue::members() const {
   return all;
 }
 
-void JsonValue::only_keys(std::initializer_list<std::string_view> known) const {
+void JsonValue::only_keys(std::span<const std::string_view> known) const {
   if (!node_->is_object()) throw error("an object");
   for (const auto& [key, value] : node_->items()) {
     if (key == "$schema" || key == "comment") continue;
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw child(key, value).error("unknown key \"" + key + "\"", "one of: " + listed({known.begin(), known.size()}));
+      throw child(key, value).error("unknown key \"" + key + "\"", "one of: " + listed(known));
   }
 }
 

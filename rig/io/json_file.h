@@ -38,7 +38,10 @@ public:
 
   /// An object whose every key is one of these ("$schema" and "comment" are always welcome).
   /// Throws, naming the unknown key, its place, and the keys that exist.
-  void only_keys(std::initializer_list<std::string_view> known) const;
+  void only_keys(std::span<const std::string_view> known) const;
+  void only_keys(std::initializer_list<std::string_view> known) const {
+    only_keys(std::span(known.begin(), known.size()));
+  }
 
   std::string string() const; ///< without control characters: names and paths end up in lines, tables and scripts
   std::string string_among(std::span<const std::string_view> choices) const;

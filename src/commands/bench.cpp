@@ -6,7 +6,7 @@
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/measure/frame_metrics.h"
-#include "src/options/scene_options.h"
+#include "src/options/setting_options.h"
 #include "src/run/session.h"
 #include "src/study/bench/dancer_skirt.h"
 #include "src/study/bench/stability_report.h"
@@ -24,11 +24,22 @@ constexpr const char* k_dancer_skirt = "dancer-skirt";
 constexpr int k_first_measured = 60;
 
 struct Options {
-  std::string name = k_dancer_skirt, solver = "xpbd", backend = "hybrid", features = "auto", json;
-  int n = 30, frames = k_dancer_frames, runs = k_stability_runs, passes = 1;
-  std::optional<int> substeps;
-  bool still = false, fixed_substeps = false, double_precision = false;
+  std::string name = k_dancer_skirt, json;
+  int n = 30, frames = k_dancer_frames, runs = k_stability_runs;
+  std::vector<SettingChange> changes;
+  bool still = false;
 };
+
+/// Gives `settings` what was asked for, where cloth in rows and columns, as all of these scenes wear, honours it.
+void take_changes(const std::vector<SettingChange>& changes, RunSettings& settings) {
+  for (const SettingChange& change : changes) change.row->set(settings, change.value);
+  if (settings.backend == proxies::Backend::mesh)
+    throw InputError("", "--backend", "mesh", "a backend of proxies: these scenes have no body");
+  const cloth::Garment woven = dancer_skirt(8);
+  for (const SettingChange& change : changes)
+    if (const auto wrong = unhonoured(*change.row, settings, {&woven, 1}))
+      throw InputError("", change.by, wrong->found, wrong->expected);
+}
 
 struct Run {
   std::vector<FrameMetrics> metrics; ///< of the measured frames
@@ -61,6 +72,10 @@ Run run_scene(DancerSkirt& scene, int frames) {
   return run;
 }
 
+std::string_view backend_of(const DancerSkirt& scene) {
+  return proxies::k_backend_names[static_cast<std::size_t>(scene.setup().backend)];
+}
+
 double ns_per_particle_substep(const RunMetrics& m, const DancerSkirtSetup& setup) {
   return 1e6 * m.ms_median / (static_cast<double>(setup.n) * setup.n * setup.substeps);
 }
@@ -72,9 +87,9 @@ json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics&
   const auto percent = [&](double share) { return figure(100.0 * share); };
   json result = {{"name", options.name},
                  {"n", options.n},
-                 {"solver", options.solver},
+                 {"solver", cloth::name_of(scene.setup().solver)},
                  {"substeps", scene.setup().substeps},
-                 {"backend", options.backend},
+                 {"backend", backend_of(scene)},
                  {"still", options.still},
                  {"offset_mm", 1000.0 * scene.skirt().fabric.contact_offset()},
                  {"friction", scene.setup().solver == cloth::SolverKind::xpbd ? k_dancer_friction : 0.0},
@@ -105,10 +120,10 @@ json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics&
 }
 
 std::string text_of(const Options& options, const DancerSkirt& scene, const RunMetrics& m) {
-  std::string text =
-      fmt::format("{}{}: {} x {} particles, {} proxies, {} ({}), {} substeps a frame, contact offset {:.1f} mm\n",
-                  options.name, options.still ? " (still)" : "", options.n, options.n, k_dancer_proxies, options.solver,
-                  options.backend, scene.setup().substeps, 1000.0 * scene.skirt().fabric.contact_offset());
+  std::string text = fmt::format(
+      "{}{}: {} x {} particles, {} proxies, {} ({}), {} substeps a frame, contact offset {:.1f} mm\n", options.name,
+      options.still ? " (still)" : "", options.n, options.n, k_dancer_proxies, cloth::name_of(scene.setup().solver),
+      backend_of(scene), scene.setup().substeps, 1000.0 * scene.skirt().fabric.contact_offset());
   if (m.frames == 0)
     return text + fmt::format("diverged or stopped before frame {}: nothing measured\n", k_first_measured);
   const auto row = [&](const char* what, const char* unit, const OverFrames& worst, double scale,
@@ -135,13 +150,10 @@ std::string text_of(const Options& options, const DancerSkirt& scene, const RunM
 int run_dancer_skirt(const Options& options) {
   DancerSkirtSetup setup;
   setup.n = options.n;
-  setup.solver = cloth::solver_named(options.solver);
-  setup.substeps = options.substeps.value_or(default_substeps(setup.solver, options.n));
-  setup.backend = proxies::backend_named(options.backend);
+  setup.substeps = 0;
+  take_changes(options.changes, setup);
+  if (setup.substeps == 0) setup.substeps = default_substeps(setup.solver, setup.n);
   setup.motion = options.still ? DancerMotion::still : DancerMotion::dance;
-  setup.options.features = cloth::contact_features_named(options.features);
-  setup.options.passes = options.passes;
-  setup.options.double_precision = options.double_precision;
   DancerSkirt scene(setup);
   const Run done = run_scene(scene, options.frames);
   const RunMetrics metrics = summarise(done.metrics, done.ms);
@@ -153,11 +165,8 @@ int run_dancer_skirt(const Options& options) {
 }
 
 int run_stability_family(const Options& options) {
-  StabilitySetup setup;
-  setup.solver.solver = cloth::solver_named(options.solver);
-  setup.backend = proxies::backend_named(options.backend);
-  setup.adaptive = !options.fixed_substeps;
-  if (options.substeps) setup.substeps = *options.substeps;
+  RunSettings setup;
+  take_changes(options.changes, setup);
   const StabilityReport report = report_stability(options.name, setup, options.runs, [] { return !interrupted(); });
   if (!options.json.empty()) write_file(options.json, json_text(report.json));
   fmt::print("{}", report.text);
@@ -184,21 +193,9 @@ void add_bench(CLI::App& app, int& status) {
   std::vector<std::string> names = stability_names();
   names.insert(names.begin(), k_dancer_skirt);
   command->add_option("name", options->name, "The scene")->required()->check(CLI::IsMember(names));
-  command->add_option("--solver", options->solver, "What moves the cloth")
-      ->check(one_of(cloth::k_solver_names))
-      ->capture_default_str();
-  command->add_option("--substeps", options->substeps, "Substeps a frame; as many as the solver needs when left out")
-      ->check(CLI::Range(1, 10000));
-  command->add_option("--backend", options->backend, "How particles ask colliders")
-      ->check(one_of(proxies::k_proxy_backend_names))
-      ->capture_default_str();
-  command->add_option("--features", options->features, "What of the cloth meets colliders")
-      ->check(one_of(cloth::k_contact_features_names))
-      ->capture_default_str();
-  command->add_option("--passes", options->passes, "Passes over the constraints, a substep (xpbd)")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
-  command->add_flag("--double", options->double_precision, "In double precision (xpbd)");
+  add_setting_options(
+      *command, options->changes,
+      {"solver", "backend", "substeps", "features", "swept", "passes", "double_precision", "self_collision"});
   command->add_option("--json", options->json, "Write the figures to this file");
 
   const std::string group = k_dancer_skirt;
@@ -212,13 +209,11 @@ void add_bench(CLI::App& app, int& status) {
           ->capture_default_str()
           ->group(group),
       command->add_flag("--still", options->still, "The dancer stands still")->group(group)};
-  const std::vector<CLI::Option*> of_others = {
-      command->add_option("--runs", options->runs, "Jittered starts of each variant")
-          ->check(CLI::Range(1, 1000))
-          ->capture_default_str()
-          ->group("scenes of stability"),
-      command->add_flag("--fixed-substeps", options->fixed_substeps, "Never more substeps than asked")
-          ->group("scenes of stability")};
+  std::vector<CLI::Option*> of_others = add_setting_options(*command, options->changes, {"adaptive_substeps"});
+  of_others.push_back(command->add_option("--runs", options->runs, "Jittered starts of each variant")
+                          ->check(CLI::Range(1, 1000))
+                          ->capture_default_str()
+                          ->group("scenes of stability"));
   command->callback([options, of_skirt, of_others, &status] {
     refuse_foreign(options->name, of_skirt, of_others);
     check_outputs({{"--json", options->json}}, {});

@@ -171,7 +171,11 @@ int run(const Options& options) {
   const FolderLock lock(folder, "tutu chart");
   std::vector<Setting> settings = options.settings.empty() ? builtin_settings(scene.description(), options.chart.quick)
                                                            : read_settings(options.settings, scene.settings);
+  if (options.settings.empty()) std::erase_if(settings, [&](const Setting& s) { return unhonoured(s, scene); });
   const ReferencePlan plan = options.chart.plan(scene);
+  for (const Setting& setting : settings)
+    if (const auto wrong = unhonoured(setting, scene))
+      throw InputError(options.settings, setting.name, wrong->found, wrong->expected);
   for (const Setting& setting : settings)
     (void)at_rate(plan.protocol, scene.settings.frames_per_second, setting.frames_per_second);
   read_results(folder / "results.csv"); // a file of something else is told before long work

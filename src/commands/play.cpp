@@ -104,7 +104,6 @@ Layers layers_of(const PlayOptions& options) {
 
 LoadedScene load(const PlayOptions& options) {
   LoadedScene scene = options.scene.load();
-  if (options.fixed_substeps) scene.settings.adaptive_substeps = false;
   if ((layers_of(options).proxy_error || options.worst) && scene.proxies.empty())
     throw InputError(scene.file, "/proxies", "none", "proxies to show the error of");
   if (const std::string warning = warning_of(scene); !warning.empty())
@@ -213,8 +212,6 @@ void add_play(CLI::App& app, int& status) {
   command->add_option("--pitch", options->pitch_degrees, "Camera: degrees from above")
       ->check(finite_number())
       ->capture_default_str();
-  command->add_flag("--fixed-substeps", options->fixed_substeps,
-                    "Never more substeps than asked, however fast something moves");
   command->add_flag("--no-pictures", options->no_pictures, "Simulate only (with --headless or --json)");
   command->callback([options, &status] { status = run(*options); });
 }

@@ -10,7 +10,7 @@ namespace tutu::app {
 
 struct PlayOptions {
   SceneOptions scene;
-  bool headless = false, window = false, paused = false, no_pictures = false, fixed_substeps = false;
+  bool headless = false, window = false, paused = false, no_pictures = false;
   std::optional<int> frames;
   std::string out, json;
   std::vector<int> at;

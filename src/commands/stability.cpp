@@ -26,7 +26,7 @@ struct Options {
   SceneOptions scene;
   std::string out = "stability", json;
   std::vector<std::string> only;
-  bool quick = false, no_pictures = false, fixed_substeps = false;
+  bool quick = false, no_pictures = false;
   std::optional<int> starts;
 };
 
@@ -56,8 +56,7 @@ int run(const Options& options) {
   const fs::path folder = options.out;
   if (!options.no_pictures) require_chart(folder / "map.svg"); // no gnuplot is told before long work
   catch_interrupt();
-  LoadedScene scene = options.scene.load();
-  if (options.fixed_substeps) scene.settings.adaptive_substeps = false;
+  const LoadedScene scene = options.scene.load();
   if (scene.garments.empty()) throw InputError(scene.file, "/garments", "none", "a garment to run");
   const SceneSetting setting = scene_setting(scene);
   if (std::isinf(stiffest(setting)->step_limit))
@@ -70,7 +69,7 @@ int run(const Options& options) {
   MapOptions what;
   what.quick = options.quick;
   what.starts = options.starts.value_or(options.quick ? 2 : 4);
-  what.threads = options.scene.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  what.threads = options.scene.threads().value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   if (setting.proxies.empty())
     fmt::print(stderr, "note: no proxy comes near the garments: no maps of speed, cells and overlap\n");
   std::vector<StabilityMap> maps = plan_maps(scene, setting, start_overlap(scene, *start), what);
@@ -112,8 +111,6 @@ void add_stability(CLI::App& app, int& status) {
   command->add_option("--starts", options->starts, "Jittered starts of each cell; 4, or 2 with --quick")
       ->check(CLI::Range(1, 1000));
   command->add_option("--only", options->only, "Maps whose names begin so")->delimiter(',');
-  command->add_flag("--fixed-substeps", options->fixed_substeps,
-                    "Never more substeps than asked, however fast something moves");
   command->add_flag("--no-pictures", options->no_pictures, "Figures only: needs no gnuplot");
   command->add_option("--json", options->json, "Write all maps to this file");
   command->callback([options, &status] { status = run(*options); });

@@ -43,7 +43,7 @@ int run(const Options& options) {
   what.every = options.every;
   what.samples = options.samples;
   if (options.tolerance_mm) what.tolerance = 1e-3 * *options.tolerance_mm;
-  what.threads = options.scene.threads.value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
+  what.threads = options.scene.threads().value_or(std::max(1, static_cast<int>(std::thread::hardware_concurrency())));
   std::optional<GarmentPositions> start;
   if (!options.no_cloth && !scene.garments.empty()) {
     start = draped_start(scene);

@@ -2,10 +2,12 @@
 
 #include "src/base/interrupt.h"
 #include "src/base/progress.h"
+#include "src/options/setting_options.h"
 #include "src/run/drape.h"
 #include "src/scene/load.h"
 #include "src/scene/saved_drape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
@@ -26,28 +28,23 @@ CLI::Validator one_of(std::span<const std::string_view> names) {
 
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("scene", scene, "Scene file (.json); the shipped dance when left out");
-  command.add_option("--substeps", substeps, "Substeps a frame, in place of the scene's")->check(CLI::Range(1, 10000));
-  command.add_option("--threads", threads, "Threads that step garments side by side, in place of the scene's")
-      ->check(CLI::Range(1, k_most_threads));
-  command.add_option("--solver", solver, "How cloth is solved, in place of the scene's")
-      ->check(one_of(cloth::k_solver_names));
-  command.add_option("--backend", backend, "How particles ask colliders, in place of the scene's")
-      ->check(one_of(proxies::k_backend_names));
-  command.add_flag("--self-collision", self_collision, "Each garment collides with itself too (solver xpbd)");
+  add_setting_options(command, changes);
 }
 
 LoadedScene SceneOptions::load() const {
   const std::filesystem::path file =
       scene.empty() ? assets_folder() / "scenes" / "dance.json" : std::filesystem::path(scene);
   SceneDescription description = read_scene(file);
-  if (substeps) description.settings.substeps = *substeps;
-  if (threads) description.settings.threads = *threads;
-  if (solver) description.settings.solver = cloth::solver_named(*solver);
-  if (backend) description.settings.backend = proxies::backend_named(*backend);
-  description.settings.self_collision = description.settings.self_collision || self_collision;
+  description.changes = changes;
   LoadedScene loaded = load_scene(description);
   for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
   return loaded;
+}
+
+std::optional<int> SceneOptions::threads() const {
+  const SettingRow* const row = find_setting("threads");
+  const auto found = std::find_if(changes.begin(), changes.end(), [&](const SettingChange& c) { return c.row == row; });
+  return found == changes.end() ? std::nullopt : std::optional(found->value);
 }
 
 std::optional<GarmentPositions> draped_start(const LoadedScene& scene) {

@@ -20,13 +20,12 @@ CLI::Validator one_of(std::span<const std::string_view> names);
 /// Options that change a scene's own settings.
 struct SceneOptions {
   std::string scene; ///< empty: the default scene
-  std::optional<int> substeps, threads;
-  std::optional<std::string> backend, solver;
-  bool self_collision = false; ///< asked for, whatever the scene says
+  std::vector<SettingChange> changes;
 
   void add_to(CLI::App& command);
   /// The scene file with these options applied; notes of the loading go to stderr.
   LoadedScene load() const;
+  std::optional<int> threads() const; ///< where they are among the changes
 };
 
 /// The draped start of a scene: its saved drape where that fits, else garments settled now (with a progress bar; the

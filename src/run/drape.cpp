@@ -1,5 +1,6 @@
 #include "src/run/drape.h"
 #include "cloth/state/tolerances.h"
+#include "src/run/settings_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,19 +94,11 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
         add_point(anchor->points[k]);
       }
   }
-  const RunSettings& d = scene.settings;
   add(scene.ground_height.value_or(0.0), scene.ground_height ? 1.0 : 0.0);
-  add(d.frames_per_second, d.substeps, d.solver == cloth::SolverKind::xpbd ? 1.0 : 0.0);
-  // Without these the hash stays that of drapes made before there were any.
-  if (d.self_collision) add(1.0);
-  if (d.backend == proxies::Backend::mesh) add(2.0);
-  if (d.features != cloth::ContactFeatures::automatic) add(3.0, static_cast<double>(d.features));
-  if (!d.swept) add(4.0);
-  if (d.passes != 1) add(5.0, d.passes);
-  if (d.double_precision) add(6.0);
+  for_each_draping(scene.settings, [&](int number) { add(number); });
   const bool meets_skin =
-      d.backend == proxies::Backend::mesh || std::any_of(scene.skin_pins.begin(), scene.skin_pins.end(),
-                                                         [](const SkinPins& pins) { return !pins.bindings.empty(); });
+      scene.collides_with_body() || std::any_of(scene.skin_pins.begin(), scene.skin_pins.end(),
+                                                [](const SkinPins& pins) { return !pins.bindings.empty(); });
   if (meets_skin && scene.character.skin.method != rig::Skinning::linear)
     add(7.0, static_cast<double>(scene.character.skin.method));
   return cloth::state_hash(numbers);

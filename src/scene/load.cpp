@@ -127,6 +127,23 @@ WornGarment put_on(const GarmentEntry& entry, cloth::GarmentDescription garment,
               character);
 }
 
+/// The description's settings, where the garments honour what is said of them.
+void apply_settings(const SceneDescription& description, LoadedScene& scene) {
+  const RunSettings changed = description.changed_settings();
+  for (const SettingRow* row : description.stated) {
+    if (const auto wrong = unhonoured(*row, description.settings, scene.garments))
+      throw InputError(scene.file, fmt::format("/{}/{}", row->section, row->key), wrong->found, wrong->expected);
+    if (row->get(changed) != row->get(description.settings)) continue;
+    if (const auto useless = unhonoured(*row, changed, scene.garments))
+      scene.notes.push_back(
+          fmt::format("{} of the scene does not count: expected {}", useless->found, useless->expected));
+  }
+  for (const SettingChange& change : description.changes)
+    if (const auto wrong = unhonoured(*change.row, changed, scene.garments))
+      throw InputError("", change.by, wrong->found, wrong->expected);
+  scene.settings = changed;
+}
+
 } // namespace
 
 WornGarment put_on(const GarmentEntry& entry, const rig::Character& character) {
@@ -137,7 +154,6 @@ LoadedScene load_scene(const SceneDescription& description) {
   LoadedScene scene;
   scene.file = description.file.string();
   scene.files = description;
-  scene.settings = description.settings;
   scene.ground_height = description.ground_height;
   rig::Import import = within_memory(description.character.string(), [&] {
     return rig::import_character(description.character, {description.max_influences});
@@ -162,6 +178,7 @@ LoadedScene load_scene(const SceneDescription& description) {
     scene.skin_pins.push_back(std::move(worn.skin_pins));
     scene.garments.push_back(std::move(worn.garment));
   }
+  apply_settings(description, scene);
   return scene;
 }
 

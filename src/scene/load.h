@@ -15,10 +15,11 @@ struct LoadedScene : Scene {
   SceneFiles files;
   std::vector<std::string> notes; ///< what the user should know: from the importer, the retargeting, units
 
-  SceneDescription description() const { return {files, ground_height, settings}; }
+  SceneDescription description() const { return {files, ground_height, settings, {}, {}}; }
 };
 
-/// Reads everything a description names. Throws InputError.
+/// Reads everything a description names. Throws InputError; also for a setting that the file states, or that is
+/// changed, and that a garment does not honour. One that only a change has made useless is noted.
 LoadedScene load_scene(const SceneDescription& description);
 
 /// A garment from its file, changed as the entry says, on the character. Throws InputError as read_garment and wear.

@@ -105,6 +105,12 @@ std::vector<fs::path> inputs_of(const SceneFiles& files) {
   return inputs;
 }
 
+RunSettings SceneDescription::changed_settings() const {
+  RunSettings changed = settings;
+  for (const SettingChange& change : changes) change.row->set(changed, change.value);
+  return changed;
+}
+
 SceneDescription read_scene(const fs::path& file) {
   const JsonValue json = JsonValue::read(file);
   json.only_keys({"character", "motion", "interpolation", "skinning", "proxies", "garments", "ground", "solver",
@@ -140,28 +146,8 @@ SceneDescription read_scene(const fs::path& file) {
       scene.ground_height = ground->at("height").number();
     }
   }
-  if (const auto solver = json.find("solver")) {
-    solver->only_keys(
-        {"name", "substeps", "adaptive_substeps", "frames_per_second", "threads", "passes", "double_precision"});
-    if (const auto name = solver->find("name"))
-      scene.settings.solver = cloth::solver_named(name->string_among(cloth::k_solver_names));
-    if (const auto substeps = solver->find("substeps")) scene.settings.substeps = substeps->integer_in(1, 10000);
-    if (const auto adaptive = solver->find("adaptive_substeps")) scene.settings.adaptive_substeps = adaptive->boolean();
-    if (const auto threads = solver->find("threads")) scene.settings.threads = threads->integer_in(1, k_most_threads);
-    if (const auto passes = solver->find("passes")) scene.settings.passes = passes->integer_in(1, 100);
-    if (const auto precise = solver->find("double_precision")) scene.settings.double_precision = precise->boolean();
-    if (const auto rate = solver->find("frames_per_second"))
-      scene.settings.frames_per_second = rate->integer_in(1, 10000);
-  }
-  if (const auto collision = json.find("collision")) {
-    collision->only_keys({"backend", "self_collision", "features", "swept"});
-    if (const auto backend = collision->find("backend"))
-      scene.settings.backend = proxies::backend_named(backend->string_among(proxies::k_backend_names));
-    if (const auto self = collision->find("self_collision")) scene.settings.self_collision = self->boolean();
-    if (const auto features = collision->find("features"))
-      scene.settings.features = cloth::contact_features_named(features->string_among(cloth::k_contact_features_names));
-    if (const auto swept = collision->find("swept")) scene.settings.swept = swept->boolean();
-  }
+  for (const char* section : {"solver", "collision"})
+    if (const auto settings = json.find(section)) read_section(*settings, section, scene.settings, scene.stated);
   if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);
   else scene.drape = fs::path(file).replace_extension(".drape.json");
   return scene;

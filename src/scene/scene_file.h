@@ -4,7 +4,7 @@
 #include "rig/io/bvh.h"
 #include "rig/io/clip_file.h"
 #include "rig/skin.h"
-#include "src/run/settings.h"
+#include "src/run/settings_table.h"
 
 #include <filesystem>
 #include <map>
@@ -56,6 +56,10 @@ struct SceneFiles {
 struct SceneDescription : SceneFiles {
   std::optional<double> ground_height = 0.0; ///< m; none = no ground
   RunSettings settings;
+  std::vector<const SettingRow*> stated; ///< what the file says of them
+  std::vector<SettingChange> changes;    ///< in place of that
+
+  RunSettings changed_settings() const;
 };
 
 /// All files that a scene is read from: its own, and those that these name (of a character's file not its buffers).

@@ -3,6 +3,7 @@
 #include "rig/io/file_io.h"
 #include "src/base/json_text.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace tutu::app {
@@ -76,17 +77,14 @@ void write_scene(const SceneDescription& d, const fs::path& file, const std::str
   for (const GarmentEntry& entry : d.garments) json["garments"].push_back(garment_json(entry, paths));
   if (!d.ground_height) json["ground"] = false;
   else json["ground"] = {{"height", *d.ground_height}};
-  json["solver"] = {{"name", cloth::name_of(d.settings.solver)},
-                    {"substeps", d.settings.substeps},
-                    {"adaptive_substeps", d.settings.adaptive_substeps},
-                    {"frames_per_second", d.settings.frames_per_second},
-                    {"threads", d.settings.threads},
-                    {"passes", d.settings.passes},
-                    {"double_precision", d.settings.double_precision}};
-  json["collision"] = {{"backend", proxies::k_backend_names[static_cast<std::size_t>(d.settings.backend)]},
-                       {"self_collision", d.settings.self_collision},
-                       {"features", cloth::k_contact_features_names[static_cast<std::size_t>(d.settings.features)]},
-                       {"swept", d.settings.swept}};
+  // What is left out is the standard; what the file would say of no use is refused when it is read.
+  for (const SettingRow& row : settings_table()) {
+    const int value = row.get(d.settings);
+    if (value == row.standard() && std::find(d.stated.begin(), d.stated.end(), &row) == d.stated.end()) continue;
+    if (row.is_choice()) json[row.section][row.key] = row.names[value];
+    else if (row.is_switch()) json[row.section][row.key] = value != 0;
+    else json[row.section][row.key] = value;
+  }
   json["drape"] = paths(d.drape);
   write_file(file, json_text(json));
 }

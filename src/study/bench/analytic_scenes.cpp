@@ -35,9 +35,8 @@ cloth::Garment sheet(const cloth::GridShape& shape, const cloth::Fabric& fabric,
 /// A garment between pins that stand still, with at most a ground.
 class Stand {
 public:
-  Stand(const cloth::Garment& garment, const StabilitySetup& setup)
-      : garment_(&garment), solver_(cloth::make_solver(garment, setup.solver)),
-        query_(proxies::make_query(setup.backend)) {
+  Stand(const cloth::Garment& garment, const RunSettings& setup)
+      : garment_(&garment), solver_(cloth::make_solver(garment, setup)), query_(proxies::make_query(setup.backend)) {
     for (const cloth::Pin& pin : garment.pins) pins_.push_back(garment.rest_positions[pin.particle]);
     input_.seconds = k_frame;
     input_.substeps = setup.substeps;
@@ -70,7 +69,7 @@ private:
 };
 
 /// How far the sheet's centre has slid down a slope after 2 s, m.
-double slide(double angle, double friction, const StabilitySetup& setup) {
+double slide(double angle, double friction, const RunSettings& setup) {
   const Vec3 downhill(0.0, -std::sin(angle), std::cos(angle)), normal(0.0, std::cos(angle), std::sin(angle));
   const cloth::Fabric fabric = airless(40.0);
   const cloth::GridShape shape{8, 8, fabric.contact_offset() * normal, {0.3, 0, 0}, 0.3 * downhill};
@@ -101,7 +100,7 @@ double greatest_rise(const std::vector<double>& values) {
 
 bool AnalyticFigure::passed() const { return std::abs(measured - expected) <= tolerance; }
 
-std::vector<AnalyticFigure> free_fall(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> free_fall(const RunSettings& setup) {
   const cloth::Garment garment = sheet({8, 8, {-0.15, 2, 0}, {0.3, 0, 0}, {0, -0.3, 0}}, airless(40.0));
   Stand stand(garment, setup);
   constexpr int k_frames = 30;
@@ -125,7 +124,7 @@ std::vector<AnalyticFigure> free_fall(const StabilitySetup& setup) {
           {"particles out of shape", "m", bent, 0.0, 1e-4}};
 }
 
-std::vector<AnalyticFigure> slope(double friction, const StabilitySetup& setup) {
+std::vector<AnalyticFigure> slope(double friction, const RunSettings& setup) {
   constexpr double k_half_degree = 0.5 * std::numbers::pi / 180.0, k_seconds = 2.0;
   const double angle = std::atan(friction), steep = angle + k_half_degree;
   const double way = 0.5 * k_gravity * (std::sin(steep) - friction * std::cos(steep)) * k_seconds * k_seconds;
@@ -135,7 +134,7 @@ std::vector<AnalyticFigure> slope(double friction, const StabilitySetup& setup) 
            0.05 * way + 1e-3}};
 }
 
-std::vector<AnalyticFigure> pendulum(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> pendulum(const RunSettings& setup) {
   constexpr double k_length = 0.5, k_amplitude = 0.5;
   constexpr int k_swings = 5;
   cloth::Fabric fabric = airless(1e4);
@@ -175,7 +174,7 @@ std::vector<AnalyticFigure> pendulum(const StabilitySetup& setup) {
 namespace {
 
 /// The sag of the band with its long side along warp or weft.
-AnalyticFigure catenary_along(bool warp, const StabilitySetup& setup) {
+AnalyticFigure catenary_along(bool warp, const RunSettings& setup) {
   constexpr double k_span = 1.0, k_length = 1.2;
   constexpr int k_particles = 61;
   const Vec3 along(k_length, 0, 0), width(0, 0, 0.02), corner(-0.5 * k_length, 1, 0);
@@ -213,11 +212,11 @@ AnalyticFigure catenary_along(bool warp, const StabilitySetup& setup) {
 
 } // namespace
 
-std::vector<AnalyticFigure> catenary(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> catenary(const RunSettings& setup) {
   return {catenary_along(true, setup), catenary_along(false, setup)};
 }
 
-std::vector<AnalyticFigure> hang(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> hang(const RunSettings& setup) {
   constexpr int k_side = 20;
   cloth::Fabric fabric = airless(60.0);
   fabric.density = 0.2;
@@ -244,7 +243,7 @@ std::vector<AnalyticFigure> hang(const StabilitySetup& setup) {
   return {{"elongation", "m", give, expected, 0.02 * expected}};
 }
 
-std::vector<AnalyticFigure> energy(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> energy(const RunSettings& setup) {
   const cloth::Garment garment =
       sheet({12, 12, {-0.25, 1, 0}, {0.5, 0, 0}, {0, -0.5, 0}}, airless(40.0), {{"stage", 0, 0, 0, -1}});
   Stand stand(garment, setup);
@@ -268,7 +267,7 @@ std::vector<AnalyticFigure> energy(const StabilitySetup& setup) {
 
 namespace {
 
-std::vector<AnalyticFigure> slopes(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> slopes(const RunSettings& setup) {
   std::vector<AnalyticFigure> figures;
   for (int tenth = 1; tenth <= 10; ++tenth) {
     const std::vector<AnalyticFigure> more = slope(0.1 * tenth, setup);
@@ -282,7 +281,7 @@ std::vector<AnalyticFigure> slopes(const StabilitySetup& setup) {
 const std::vector<AnalyticFamily>& analytic_families() {
   static const std::vector<AnalyticFamily> families = {
       {"drop", "free fall, and a sheet on a slope about the angle of friction",
-       [](const StabilitySetup& setup) {
+       [](const RunSettings& setup) {
          std::vector<AnalyticFigure> figures = free_fall(setup);
          const std::vector<AnalyticFigure> more = slopes(setup);
          figures.insert(figures.end(), more.begin(), more.end());

@@ -22,29 +22,29 @@ struct AnalyticFigure {
 inline constexpr double k_measured_only = std::numeric_limits<double>::infinity();
 
 /// A loose sheet in air without drag: where it is after half a second, how fast, and whether it kept its shape.
-std::vector<AnalyticFigure> free_fall(const StabilitySetup& setup);
+std::vector<AnalyticFigure> free_fall(const RunSettings& setup);
 
 /// A small sheet on a slope half a degree below and above the angle of friction, atan(friction), for 2 s: it stays, or
 /// slides g (sin a - friction cos a) t^2 / 2.
-std::vector<AnalyticFigure> slope(double friction, const StabilitySetup& setup);
+std::vector<AnalyticFigure> slope(double friction, const RunSettings& setup);
 
 /// A row of particles on stiff threads, let go at 0.5 rad, for six swings. Period 2 pi sqrt(L / g) (1 + a^2 / 16 +
 /// 11 a^4 / 3072) for amplitude a; energy must not grow, nor be lost faster than a first-order scheme loses it.
-std::vector<AnalyticFigure> pendulum(const StabilitySetup& setup);
+std::vector<AnalyticFigure> pendulum(const RunSettings& setup);
 
 /// A narrow band of 1.2 m between points 1 m apart: its sag is that of the catenary.
-std::vector<AnalyticFigure> catenary(const StabilitySetup& setup);
+std::vector<AnalyticFigure> catenary(const RunSettings& setup);
 
 /// A sheet hangs by its own weight: each thread gives by the sum over its edges of (weight below) / (edge's stiffness).
-std::vector<AnalyticFigure> hang(const StabilitySetup& setup);
+std::vector<AnalyticFigure> hang(const RunSettings& setup);
 
 /// A hanging sheet, shaken at the start and then left alone without drag: the sum of its energies never grows.
-std::vector<AnalyticFigure> energy(const StabilitySetup& setup);
+std::vector<AnalyticFigure> energy(const RunSettings& setup);
 
 /// By the name of the command line.
 struct AnalyticFamily {
   std::string name, what;
-  std::function<std::vector<AnalyticFigure>(const StabilitySetup& setup)> run;
+  std::function<std::vector<AnalyticFigure>(const RunSettings& setup)> run;
 };
 const std::vector<AnalyticFamily>& analytic_families();
 

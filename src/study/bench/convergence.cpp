@@ -13,13 +13,13 @@ constexpr int k_frames = 15;   // of 1/60 s
 constexpr double k_nothing = std::numeric_limits<double>::quiet_NaN();
 
 /// Particles at the end; none when the run broke. `particles` a side.
-std::vector<Vec3> swung(int particles, int substeps, const StabilitySetup& setup) {
+std::vector<Vec3> swung(int particles, int substeps, const RunSettings& setup) {
   cloth::GarmentDescription description;
   description.name = "sheet";
   description.shape = cloth::GridShape{particles, particles, {-0.5 * k_size, 1, 0}, {k_size, 0, 0}, {0, 0, k_size}};
   description.attachments = {{"stage", 0, 0, 0, -1}};
   const cloth::Garment garment = cloth::build_garment(description);
-  cloth::SolverOptions options = setup.solver;
+  cloth::SolverOptions options = setup;
   options.double_precision = true;
   const auto solver = cloth::make_solver(garment, options);
   const auto query = proxies::make_query(setup.backend);
@@ -56,7 +56,7 @@ AnalyticFigure order_of(const std::string& what, const std::vector<double>& erro
 
 } // namespace
 
-std::vector<AnalyticFigure> convergence_in_step(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> convergence_in_step(const RunSettings& setup) {
   constexpr int k_side = 9, k_reference = 2560;
   const std::vector<Vec3> reference = swung(k_side, k_reference, setup);
   std::vector<AnalyticFigure> figures;
@@ -69,7 +69,7 @@ std::vector<AnalyticFigure> convergence_in_step(const StabilitySetup& setup) {
   return figures;
 }
 
-std::vector<AnalyticFigure> convergence_in_cells(const StabilitySetup& setup) {
+std::vector<AnalyticFigure> convergence_in_cells(const RunSettings& setup) {
   constexpr int k_shared = 5, k_finest = 65, k_substeps = 160;
   const std::vector<Vec3> reference = swung(k_finest, k_substeps, setup);
   std::vector<AnalyticFigure> figures;

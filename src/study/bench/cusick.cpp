@@ -46,7 +46,7 @@ AnalyticFigure figure_of(const std::string& fabric, double percent) {
 
 } // namespace
 
-double drape_coefficient(const cloth::Fabric& fabric, const StabilitySetup& setup) {
+double drape_coefficient(const cloth::Fabric& fabric, const RunSettings& setup) {
   cloth::GarmentDescription description;
   description.name = "disc";
   description.shape = cloth::DiscShape{{0, 1, 0}, k_radius, k_radius, k_rings, 0.0};
@@ -57,7 +57,7 @@ double drape_coefficient(const cloth::Fabric& fabric, const StabilitySetup& setu
   support.within = cloth::Attachment::Ball{{0, 1, 0}, k_support + 1e-4};
   description.attachments = {support};
   const cloth::Garment garment = cloth::build_garment(description);
-  const auto solver = cloth::make_solver(garment, setup.solver);
+  const auto solver = cloth::make_solver(garment, setup);
   solver->reset(ruffled(garment));
   std::vector<Vec3> pins;
   for (const cloth::Pin& pin : garment.pins) pins.push_back(garment.rest_positions[pin.particle]);
@@ -80,7 +80,7 @@ double drape_coefficient(const cloth::Fabric& fabric, const StabilitySetup& setu
   return (shadow - support_area) / (flat - support_area);
 }
 
-std::vector<AnalyticFigure> cusick(const std::filesystem::path& fabrics, const StabilitySetup& setup) {
+std::vector<AnalyticFigure> cusick(const std::filesystem::path& fabrics, const RunSettings& setup) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(fabrics, error))

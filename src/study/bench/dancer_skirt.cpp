@@ -102,11 +102,6 @@ cloth::Fabric skirt_fabric() {
   return fabric;
 }
 
-cloth::SolverOptions with_kind(cloth::SolverOptions options, cloth::SolverKind kind) {
-  options.solver = kind;
-  return options;
-}
-
 } // namespace
 
 double motion_weight(double t, DancerMotion motion) {
@@ -174,8 +169,8 @@ int default_substeps(cloth::SolverKind solver, int n) {
 
 DancerSkirt::DancerSkirt(const DancerSkirtSetup& setup)
     : setup_(setup), skirt_(std::make_unique<const cloth::Garment>(dancer_skirt(setup.n))),
-      solver_(cloth::make_solver(*skirt_, with_kind(setup.options, setup.solver))),
-      query_(proxies::make_query(setup.backend)), pins_start_(skirt_->pins.size()), pins_end_(skirt_->pins.size()) {
+      solver_(cloth::make_solver(*skirt_, setup)), query_(proxies::make_query(setup.backend)),
+      pins_start_(skirt_->pins.size()), pins_end_(skirt_->pins.size()) {
   pose_dancer(0.0, setup_.motion, proxies_end_);
   dancer_pins(*skirt_, 0.0, setup_.motion, pins_end_);
 }

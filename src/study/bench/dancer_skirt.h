@@ -7,6 +7,7 @@
 
 #include "cloth/solver.h"
 #include "proxies/query/collision_query.h"
+#include "src/run/settings.h"
 
 #include <array>
 #include <memory>
@@ -48,13 +49,12 @@ inline constexpr double k_dancer_friction = 0.3; ///< cloth against every proxy;
 /// grow with n, as the time a wave needs from one particle to the next shrinks.
 int default_substeps(cloth::SolverKind solver, int n);
 
-struct DancerSkirtSetup {
+/// Of the settings those of the solver, the backend and the substeps count.
+struct DancerSkirtSetup : RunSettings {
+  DancerSkirtSetup() { substeps = default_substeps(solver, n); }
+
   int n = 30;
-  cloth::SolverKind solver = cloth::SolverKind::xpbd;
-  int substeps = default_substeps(cloth::SolverKind::xpbd, 30);
-  proxies::Backend backend = proxies::Backend::hybrid;
   DancerMotion motion = DancerMotion::dance;
-  cloth::SolverOptions options = {}; ///< `solver` is its kind
 };
 
 /// The scene in motion.

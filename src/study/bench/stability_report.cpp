@@ -16,11 +16,11 @@ using nlohmann::json;
 
 std::string hex(std::uint64_t hash) { return fmt::format("{:016x}", hash); }
 
-json head_of(const std::string& name, const StabilitySetup& setup) {
+json head_of(const std::string& name, const RunSettings& setup) {
   return {{"name", name},
-          {"solver", cloth::name_of(setup.solver.solver)},
+          {"solver", cloth::name_of(setup.solver)},
           {"substeps", setup.substeps},
-          {"adaptive_substeps", setup.adaptive},
+          {"adaptive_substeps", setup.adaptive_substeps},
           {"backend", proxies::k_backend_names[static_cast<std::size_t>(setup.backend)]},
           {"threads", 1}};
 }
@@ -73,7 +73,7 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
        {"state_hash", hex(hash)}});
 }
 
-StabilityReport report_scenes(const StabilityFamily& family, const StabilitySetup& setup, int runs,
+StabilityReport report_scenes(const StabilityFamily& family, const RunSettings& setup, int runs,
                               const std::function<bool()>& go_on) {
   StabilityReport report;
   report.json = head_of(family.name, setup);
@@ -99,7 +99,7 @@ StabilityReport report_scenes(const StabilityFamily& family, const StabilitySetu
   return report;
 }
 
-StabilityReport report_figures(const AnalyticFamily& family, const StabilitySetup& setup) {
+StabilityReport report_figures(const AnalyticFamily& family, const RunSettings& setup) {
   StabilityReport report;
   report.json = head_of(family.name, setup);
   report.text = fmt::format("{}: {}\n", family.name, family.what);
@@ -130,9 +130,9 @@ StabilityReport report_figures(const AnalyticFamily& family, const StabilitySetu
 std::vector<AnalyticFamily> figure_families() {
   std::vector<AnalyticFamily> families = analytic_families();
   families.push_back({"cusick", "the drape coefficient of every shipped fabric",
-                      [](const StabilitySetup& setup) { return cusick(assets_folder() / "fabrics", setup); }});
+                      [](const RunSettings& setup) { return cusick(assets_folder() / "fabrics", setup); }});
   families.push_back({"convergence", "the order of the error in the step and in the cells, of a swinging sheet",
-                      [](const StabilitySetup& setup) {
+                      [](const RunSettings& setup) {
                         std::vector<AnalyticFigure> figures = convergence_in_step(setup);
                         const std::vector<AnalyticFigure> more = convergence_in_cells(setup);
                         figures.insert(figures.end(), more.begin(), more.end());
@@ -150,7 +150,7 @@ std::vector<std::string> stability_names() {
   return names;
 }
 
-StabilityReport report_stability(const std::string& name, const StabilitySetup& setup, int runs,
+StabilityReport report_stability(const std::string& name, const RunSettings& setup, int runs,
                                  const std::function<bool()>& go_on) {
   StabilityReport report;
   for (const StabilityFamily& family : stability_families())

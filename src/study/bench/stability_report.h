@@ -22,7 +22,7 @@ struct StabilityReport {
 
 /// Runs the family of this name; stability scenes from `runs` jittered starts each. `go_on` is asked before each run;
 /// what was not run has not passed.
-StabilityReport report_stability(const std::string& name, const StabilitySetup& setup, int runs,
+StabilityReport report_stability(const std::string& name, const RunSettings& setup, int runs,
                                  const std::function<bool()>& go_on);
 
 } // namespace tutu::app

@@ -48,12 +48,12 @@ void judge_end(const StabilityScene& scene, const std::vector<Capsule>& capsules
 
 } // namespace
 
-StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& setup) {
+StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup) {
   const int parts = parts_of(setup.substeps, scene.looks);
   const double part_seconds = 1.0 / (k_stability_frames_per_second * parts);
   const int steps = static_cast<int>(std::lround(scene.seconds * k_stability_frames_per_second)) * parts;
   const auto query = proxies::make_query(setup.backend);
-  cloth::GuardedSolver solver(cloth::make_solver(scene.garment, setup.solver), scene.garment);
+  cloth::GuardedSolver solver(cloth::make_solver(scene.garment, setup), scene.garment);
   solver.reset(scene.start);
   CrossingCounter counter(scene.garment);
 
@@ -88,7 +88,7 @@ StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& se
     input.seconds = part_seconds;
     input.substeps = setup.substeps / parts;
     const auto begin = std::chrono::steady_clock::now();
-    if (setup.adaptive)
+    if (setup.adaptive_substeps)
       input.substeps =
           cloth::plan_substeps(input, cloth::extent_of(solver.particles()), scene.garment.fabric.contact_offset())
               .substeps;

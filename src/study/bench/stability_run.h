@@ -2,20 +2,13 @@
 #pragma once
 
 #include "cloth/solver.h"
-#include "proxies/query/collision_query.h"
+#include "src/run/settings.h"
 #include "src/study/bench/stability_scenes.h"
 
 #include <string>
 #include <vector>
 
 namespace tutu::app {
-
-struct StabilitySetup {
-  cloth::SolverOptions solver;
-  proxies::Backend backend = proxies::Backend::hybrid;
-  int substeps = 10;    ///< a frame,
-  bool adaptive = true; ///< and more where something moves too fast
-};
 
 struct StabilityRun {
   int frames = 0;             ///< done
@@ -34,7 +27,7 @@ struct StabilityRun {
   cloth::Particles end;
 };
 
-StabilityRun run_stability(const StabilityScene& scene, const StabilitySetup& setup);
+StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup);
 
 /// What does not hold, in words; none: the run passed.
 std::vector<std::string> broken_limits(const StabilityScene& scene, const StabilityRun& run);

@@ -2,10 +2,10 @@
 
 #include "proxies/proxy_file.h"
 #include "src/run/session.h"
+#include "src/run/settings_table.h"
 #include "src/scene/load.h"
 #include "src/study/chart/same_cloth.h"
 
-#include <algorithm>
 #include <fmt/format.h>
 
 namespace tutu::app {
@@ -13,29 +13,12 @@ namespace {
 
 constexpr double k_easing_drag = 50.0; // 1/s: cloth sinks at 0.2 m/s and swings no more
 
-std::string on_off(bool on) { return on ? "on" : "off"; }
-
-std::string_view name_of(proxies::Backend backend) {
-  return proxies::k_backend_names[static_cast<std::size_t>(backend)];
-}
-std::string_view name_of(cloth::ContactFeatures features) {
-  return cloth::k_contact_features_names[static_cast<std::size_t>(features)];
-}
-
-/// What people call a value, where the value alone does not say it.
+/// What people call a value.
 std::string in_words(const std::string& column, const std::string& value) {
-  if (column == "solver" || column == "backend") return value;
-  if (column == "substeps" || column == "passes" || column == "threads") return value + " " + column;
-  if (column == "frames_per_second") return value + " frames/s";
+  if (const SettingRow* row = find_setting(column)) return fmt::format(fmt::runtime(row->said), value);
   if (column == "resolution") return value + " x cells";
-  if (column == "proxies") {
-    if (value == k_no_proxies) return "no proxies";
-    return value == k_own_proxies ? "the scene's proxies" : std::filesystem::path(value).stem().string();
-  }
-  if (column == "features") return value == "auto" ? "automatic features" : value;
-  std::string name = column;
-  std::replace(name.begin(), name.end(), '_', ' ');
-  return name + " " + value;
+  if (value == k_no_proxies) return "no proxies";
+  return value == k_own_proxies ? "the scene's proxies" : std::filesystem::path(value).stem().string();
 }
 
 } // namespace
@@ -48,26 +31,26 @@ Setting own_setting(const RunSettings& of_scene) {
 }
 
 const std::vector<std::string>& setting_columns() {
-  static const std::vector<std::string> columns = {
-      "solver",   "backend", "substeps", "adaptive_substeps", "frames_per_second", "resolution", "proxies",
-      "features", "swept",   "passes",   "double_precision",  "self_collision",    "threads"};
+  static const std::vector<std::string> columns = [] {
+    std::vector<std::string> names = setting_names();
+    names.insert(names.end(), {"resolution", "proxies"});
+    return names;
+  }();
   return columns;
 }
 
 std::vector<std::string> setting_values(const Setting& s) {
-  return {std::string(cloth::name_of(s.solver)),
-          std::string(name_of(s.backend)),
-          std::to_string(s.substeps),
-          on_off(s.adaptive_substeps),
-          std::to_string(s.frames_per_second),
-          fmt::format("{:g}", s.resolution),
-          s.proxies,
-          std::string(name_of(s.features)),
-          on_off(s.swept),
-          std::to_string(s.passes),
-          on_off(s.double_precision),
-          on_off(s.self_collision),
-          std::to_string(s.threads)};
+  std::vector<std::string> values;
+  for (const SettingRow& row : settings_table()) values.push_back(text_of(row, row.get(s)));
+  values.insert(values.end(), {fmt::format("{:g}", s.resolution), s.proxies});
+  return values;
+}
+
+std::optional<Unhonoured> unhonoured(const Setting& setting, const Scene& scene) {
+  for (const SettingRow& row : settings_table())
+    if (row.get(setting) != row.get(scene.settings))
+      if (auto wrong = unhonoured(row, setting, scene.garments)) return wrong;
+  return std::nullopt;
 }
 
 std::string difference(const SettingValues& values, const SettingValues& others) {
@@ -81,10 +64,15 @@ std::vector<std::string> setting_options(const SettingValues& values, const Sett
   std::vector<std::string> options;
   for (std::size_t k = 0; k < values.size(); ++k) {
     if (values[k] == own[k]) continue;
-    std::string name = "--" + setting_columns()[k];
-    std::replace(name.begin(), name.end(), '_', '-');
-    options.push_back(name);
-    options.push_back(values[k]);
+    const std::string& column = setting_columns()[k];
+    const SettingRow* row = find_setting(column);
+    const std::string option = row ? option_of(*row) : "--" + column;
+    if (row && row->is_switch()) {
+      options.push_back(values[k] == "on" ? option : "--no" + option.substr(1));
+    } else {
+      options.push_back(option);
+      options.push_back(values[k]);
+    }
   }
   return options;
 }

@@ -3,6 +3,7 @@
 
 #include "src/scene/load.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,10 +29,14 @@ const std::vector<std::string>& setting_columns();
 
 using SettingValues = std::vector<std::string>;
 
+/// What of it, being other than the scene's, no garment there would honour.
+std::optional<Unhonoured> unhonoured(const Setting& setting, const Scene& scene);
+
 /// What tells one setting from another, in words: "mass_spring, 5 substeps"; "" when nothing does.
 std::string difference(const SettingValues& values, const SettingValues& others);
 
-/// The options of `tutu cell` that give this setting where the scene's own is another: "--solver", "mass_spring".
+/// The options of `tutu cell` that give this setting where the scene's own is another: "--solver", "mass_spring",
+/// "--no-swept".
 std::vector<std::string> setting_options(const SettingValues& values, const SettingValues& of_scene);
 
 /// The scene under that setting. Throws InputError as read_proxies and put_on.

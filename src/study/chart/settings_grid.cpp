@@ -1,6 +1,7 @@
 #include "src/study/chart/settings_grid.h"
 
 #include "rig/io/json_file.h"
+#include "src/run/settings_table.h"
 
 #include <algorithm>
 #include <charconv>
@@ -30,20 +31,9 @@ std::string proxies_of(const JsonValue& json) {
 
 /// Gives `setting` what one value of `column` says.
 void set_value(Setting& s, const std::string& column, const JsonValue& json) {
-  if (column == "solver") s.solver = cloth::solver_named(json.string_among(cloth::k_solver_names));
-  else if (column == "backend") s.backend = proxies::backend_named(json.string_among(proxies::k_backend_names));
-  else if (column == "substeps") s.substeps = json.integer_in(1, 10000);
-  else if (column == "adaptive_substeps") s.adaptive_substeps = json.boolean();
-  else if (column == "frames_per_second") s.frames_per_second = json.integer_in(1, 10000);
-  else if (column == "resolution") s.resolution = json.number_in(0.01, 100.0);
+  if (column == "resolution") s.resolution = json.number_in(0.01, 100.0);
   else if (column == "proxies") s.proxies = proxies_of(json);
-  else if (column == "features")
-    s.features = cloth::contact_features_named(json.string_among(cloth::k_contact_features_names));
-  else if (column == "swept") s.swept = json.boolean();
-  else if (column == "passes") s.passes = json.integer_in(1, 100);
-  else if (column == "double_precision") s.double_precision = json.boolean();
-  else if (column == "self_collision") s.self_collision = json.boolean();
-  else if (column == "threads") s.threads = json.integer_in(1, k_most_threads);
+  else if (const SettingRow* row = find_setting(column)) row->set(s, value_of(*row, json));
 }
 
 /// Settings, none of them twice.

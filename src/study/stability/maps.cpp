@@ -64,20 +64,20 @@ struct Maker {
   MapAxis steps() const { return powers("substep", "ms", 1e3, step, 2.0, quick ? 4 : 6, quick ? 2 : 4); }
 
   /// As the scene runs: 60 frames a second on the stage, in substeps as long as the scene's.
-  StabilitySetup setup() const {
-    StabilitySetup setup;
-    setup.solver.solver = scene.settings.solver;
+  RunSettings setup() const {
+    RunSettings setup;
+    setup.solver = scene.settings.solver;
     setup.substeps = std::max(1, static_cast<int>(std::lround(1.0 / (k_stability_frames_per_second * step))));
-    setup.adaptive = scene.settings.adaptive_substeps;
-    if (own.only_particles) setup.solver.features = cloth::ContactFeatures::particles;
+    setup.adaptive_substeps = scene.settings.adaptive_substeps;
+    if (own.only_particles) setup.features = cloth::ContactFeatures::particles;
     return setup;
   }
   /// Particles only, not swept, never more substeps.
-  StabilitySetup bare() const {
-    StabilitySetup bare = setup();
-    bare.solver.features = cloth::ContactFeatures::particles;
-    bare.solver.swept = false;
-    bare.adaptive = false;
+  RunSettings bare() const {
+    RunSettings bare = setup();
+    bare.features = cloth::ContactFeatures::particles;
+    bare.swept = false;
+    bare.adaptive_substeps = false;
     return bare;
   }
 };
@@ -143,7 +143,7 @@ void add_step_maps(const Maker& maker, cloth::SolverKind kind, std::vector<Stabi
 
 /// One map with the scene's safeguards, and its twin without.
 void add_with_twin(const Maker& maker, StabilityMap map,
-                   const std::function<void(const StabilitySetup&, double, double, std::uint64_t, MapCell&)>& run,
+                   const std::function<void(const RunSettings&, double, double, std::uint64_t, MapCell&)>& run,
                    std::vector<StabilityMap>& maps) {
   StabilityMap twin = map;
   map.own_method = true;
@@ -174,7 +174,7 @@ void add_leg_maps(const Maker& maker, const SceneSetting& setting, const ProxySe
   };
   const std::string what =
       fmt::format("a capsule as thin as {} ({:.3g} mm) goes through a hanging sheet", proxy.name, 1e3 * proxy.radius);
-  const auto run = [radius = proxy.radius](const StabilitySetup& setup, double speed, double thick, std::uint64_t seed,
+  const auto run = [radius = proxy.radius](const RunSettings& setup, double speed, double thick, std::uint64_t seed,
                                            MapCell& cell) {
     const StabilityScene scene = fast_leg(FastLeg{speed, radius, thick}, seed);
     add_outcome(cell, outcome_of(scene, run_stability(scene, setup)));
@@ -188,7 +188,7 @@ void add_leg_maps(const Maker& maker, const SceneSetting& setting, const ProxySe
       maker,
       {"speed-substeps", "Speed against substeps", what, speeds(),
        whole_around("substeps a frame (of 1/60 s)", maker.setup().substeps, 2.0, maker.each_way()), no_place},
-      [=](StabilitySetup setup, double speed, double substeps, std::uint64_t seed, MapCell& cell) {
+      [=](RunSettings setup, double speed, double substeps, std::uint64_t seed, MapCell& cell) {
         setup.substeps = static_cast<int>(substeps);
         run(setup, speed, thickness, seed, cell);
       },
@@ -204,7 +204,7 @@ void add_contact_maps(const Maker& maker, const GarmentSetting& coarsest, const 
                    around("proxy radius", "mm", 1e3, proxy.radius, maker.ratio(), maker.each_way())};
   add_with_twin(
       maker, std::move(map),
-      [](const StabilitySetup& setup, double size, double radius, std::uint64_t seed, MapCell& cell) {
+      [](const RunSettings& setup, double size, double radius, std::uint64_t seed, MapCell& cell) {
         StabilityScene scene = coarse_cells(CoarseCells{size, radius, seed % 2 == 0}, seed);
         // Contacts are what it is about: a sheet of a hand's breadth is stretched by any limb, one of metres swings on.
         scene.limits.stretch = scene.limits.speed = std::numeric_limits<double>::infinity();

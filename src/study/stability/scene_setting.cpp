@@ -1,5 +1,6 @@
 #include "src/study/stability/scene_setting.h"
 
+#include "cloth/solver.h"
 #include "proxies/distance/signed_distance.h"
 #include "proxies/motion/collider_set.h"
 #include "src/run/garment_reach.h"
@@ -38,8 +39,8 @@ GarmentSetting garment_setting(const cloth::Garment& garment, const RunSettings&
     heaviest = std::max(heaviest, garment.masses[i]);
   }
   if (heaviest > 0.0) setting.mass_ratio = heaviest / lightest;
-  setting.only_particles = description.solver == cloth::SolverKind::mass_spring || garment.rows == 0 ||
-                           description.backend == proxies::Backend::mesh;
+  setting.only_particles =
+      cloth::honoured(description, garment, description.backend).features == cloth::ContactFeatures::particles;
   return setting;
 }
 

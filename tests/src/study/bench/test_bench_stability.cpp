@@ -64,8 +64,8 @@ TEST(BenchStability, FabricsDrapeWithinTheirPublishedBands_slow) {
 TEST(BenchStability, AFabricWithoutABandIsMeasuredOnly) {
   const auto folder = test::scratch_folder();
   write_file(folder / "rag.json", R"({"density": 0.1, "bend": 0})");
-  app::StabilitySetup setup;
-  setup.solver.solver = cloth::SolverKind::mass_spring;
+  app::RunSettings setup;
+  setup.solver = cloth::SolverKind::mass_spring;
   const std::vector<app::AnalyticFigure> figures = app::cusick(folder, setup);
   ASSERT_EQ(figures.size(), 1u);
   EXPECT_THAT(figures[0].what, HasSubstr("rag, no published band"));
@@ -75,8 +75,8 @@ TEST(BenchStability, AFabricWithoutABandIsMeasuredOnly) {
 
 TEST(BenchStability, TheErrorInTheStepIsOfFirstOrder) {
   for (const cloth::SolverKind kind : {cloth::SolverKind::mass_spring, cloth::SolverKind::xpbd}) {
-    app::StabilitySetup setup;
-    setup.solver.solver = kind;
+    app::RunSettings setup;
+    setup.solver = kind;
     const std::vector<app::AnalyticFigure> figures = app::convergence_in_step(setup);
     EXPECT_NEAR(figures.back().measured, 1.0, 0.15) << cloth::name_of(kind);
   }

@@ -46,15 +46,15 @@ TEST_P(ThinLeg, NothingPasses_slow) {
 INSTANTIATE_TEST_SUITE_P(Stability, ThinLeg, ::testing::Values(1, 3, 7, 10, 14, 20, 30));
 
 TEST(Stability, AdaptiveSubstepsAreWhatStopsAFastLeg_slow) {
-  StabilitySetup setup;
+  RunSettings setup;
   setup.substeps = 3;
-  setup.solver.features = cloth::ContactFeatures::particles; // and no other help
-  setup.solver.swept = false;
+  setup.features = cloth::ContactFeatures::particles; // and no other help
+  setup.swept = false;
   for (const double speed : {1.0, 10.0, 30.0}) {
     const StabilityScene scene = fast_leg(speed, 1);
-    setup.adaptive = true;
+    setup.adaptive_substeps = true;
     EXPECT_EQ(run_stability(scene, setup).crossings, 0) << speed;
-    setup.adaptive = false;
+    setup.adaptive_substeps = false;
     const StabilityRun fixed = run_stability(scene, setup);
     EXPECT_EQ(fixed.most_substeps, 3) << "a fixed cost";
     EXPECT_EQ(fixed.crossings > 0, speed >= 10.0) << speed;
@@ -104,16 +104,16 @@ TEST(Stability, RunsAreRepeatableToTheBit) {
 }
 
 TEST(Stability, SweptContactsStopAFastLegAtAFixedCost_slow) {
-  StabilitySetup setup;
+  RunSettings setup;
   setup.substeps = 3;
-  setup.adaptive = false;
+  setup.adaptive_substeps = false;
   for (const double speed : {10.0, 20.0, 30.0}) {
     int without = 0;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
       const StabilityScene scene = fast_leg(speed, seed);
-      setup.solver.swept = true;
+      setup.swept = true;
       EXPECT_EQ(run_stability(scene, setup).crossings, 0) << speed << " m/s, start " << seed;
-      setup.solver.swept = false;
+      setup.swept = false;
       without += run_stability(scene, setup).crossings;
     }
     EXPECT_GT(without, 0) << speed << " m/s is too slow to show anything";
@@ -127,10 +127,10 @@ TEST(Stability, TheJudgeSeesALegThatPasses) {
     thick(t, capsules, pins);
     capsules[0].radius = 1e-6;
   };
-  StabilitySetup setup;
-  setup.solver.features = cloth::ContactFeatures::particles;
-  setup.solver.swept = false;
-  setup.adaptive = false;
+  RunSettings setup;
+  setup.features = cloth::ContactFeatures::particles;
+  setup.swept = false;
+  setup.adaptive_substeps = false;
   StabilityRun run = run_stability(scene, setup);
   EXPECT_EQ(run.crossings, scene.garment.columns);
   EXPECT_FALSE(broken_limits(scene, run).empty());

@@ -24,7 +24,7 @@ protected:
         coarse_(scene_) {
     SceneDescription description = scene_.description();
     override_setting(description, "substeps=2", "--split");
-    coarse_.settings = description.settings;
+    coarse_.settings = description.changed_settings();
   }
   ~Split() override { std::filesystem::remove_all(folder_); }
 
@@ -142,10 +142,11 @@ TEST_F(Split, SettingsThatAreNoneAreRefusedInOneLine) {
   for (const char* right : {"solver=mass_spring", "backend=brute", "features=particles", "swept=false", "passes=3",
                             "adaptive_substeps=false", "double_precision=true", "self_collision=true", "proxies=none"})
     override_setting(description, right, "--split");
-  EXPECT_EQ(description.settings.solver, cloth::SolverKind::mass_spring);
-  EXPECT_EQ(description.settings.backend, proxies::Backend::brute);
-  EXPECT_EQ(description.settings.passes, 3);
-  EXPECT_FALSE(description.settings.swept);
+  const RunSettings changed = description.changed_settings();
+  EXPECT_EQ(changed.solver, cloth::SolverKind::mass_spring);
+  EXPECT_EQ(changed.backend, proxies::Backend::brute);
+  EXPECT_EQ(changed.passes, 3);
+  EXPECT_FALSE(changed.swept);
   EXPECT_FALSE(description.proxies);
 }
 
