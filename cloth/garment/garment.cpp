@@ -229,7 +229,6 @@ void build_shape(const GridShape& grid, const GarmentDescription& description, G
 void build_shape(const TubeShape& tube, const GarmentDescription& description, Garment& garment) {
   const Layout layout = lay_out(description, tube);
   weave(layout, description, garment);
-  garment.pressed = tube.pressed;
   const int sewn_rows = tube.seam ? static_cast<int>(std::lround(*tube.seam * layout.rows)) : 0;
   for (int row = 0; row < sewn_rows; ++row)
     garment.seams.push_back({layout.at(row, 0), layout.at(row, layout.columns - 1)});

@@ -37,7 +37,6 @@ struct TubeShape {
   /// Without a value the cloth is woven shut, column 0 next to the last. With one, the first and the last column lie on
   /// each other and are sewn together from row 0 down to this fraction of the rows; below is a slit.
   std::optional<double> seam;
-  bool pressed = false; ///< it keeps the roundness of its rest shape; else it is sewn from flat cloth
 };
 
 /// A round sheet that lies level, its front up: rings of particles about the centre, of triangles nearly all of one
@@ -137,7 +136,7 @@ struct Garment {
   std::vector<Pin> pins;
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< normals point out of a tube, towards across x down of a grid
   Fabric fabric;
-  bool pressed = false; ///< keeps the angles of its rest shape
+  bool pressed = false; ///< keeps the angles of its rest shape; a mesh only: threads are always straight at rest
   std::array<float, 3> colour = {};
 
   int particle_count() const { return static_cast<int>(rest_positions.size()); }

@@ -49,7 +49,9 @@ TubeShape::Ring read_ring(const JsonValue& json) {
 }
 
 TubeShape read_tube(const JsonValue& json) {
-  json.only_keys({"rows", "columns", "rings", "start_degrees", "seam", "pressed"});
+  if (const auto pressed = json.find("pressed"))
+    throw pressed->error("pressed in a tube, whose threads are straight at rest", "it in a mesh, or not at all");
+  json.only_keys({"rows", "columns", "rings", "start_degrees", "seam"});
   TubeShape tube;
   tube.rows = json.at("rows").integer_in(2, k_most_particles_a_side);
   tube.columns = json.at("columns").integer_in(4, k_most_particles_a_side);
@@ -57,7 +59,6 @@ TubeShape read_tube(const JsonValue& json) {
   if (tube.rings.size() < 2) throw json.at("rings").error(std::to_string(tube.rings.size()) + " rings", "at least two");
   if (const auto start = json.find("start_degrees")) tube.start_angle = start->number() * std::numbers::pi / 180.0;
   if (const auto seam = json.find("seam")) tube.seam = seam->number_in(0.0, 1.0);
-  if (const auto pressed = json.find("pressed")) tube.pressed = pressed->boolean();
   return tube;
 }
 

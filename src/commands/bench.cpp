@@ -44,7 +44,7 @@ void take_changes(const std::vector<SettingChange>& changes, RunSettings& settin
 struct Run {
   std::vector<FrameMetrics> metrics; ///< of the measured frames
   std::vector<double> ms;
-  std::optional<SessionFailure> failure;
+  std::optional<RunFailure> failure;
 };
 
 Run run_scene(DancerSkirt& scene, int frames) {
@@ -58,7 +58,7 @@ Run run_scene(DancerSkirt& scene, int frames) {
     last = scene.particles().positions;
     if (const auto divergence = scene.advance()) {
       const double moment = scene.time() + frame_seconds * (divergence->substep + 1) / scene.setup().substeps;
-      run.failure = SessionFailure{scene.skirt().name, *divergence, frame, moment};
+      run.failure = RunFailure{scene.skirt().name, *divergence, frame, moment};
       break;
     }
     if (frame >= k_first_measured) {

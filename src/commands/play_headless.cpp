@@ -127,9 +127,8 @@ private:
 };
 
 /// Each recovery that was kept, with the constraint that was bad first.
-void tell_recoveries(const SessionTroubles& troubles) {
-  for (const SessionRecovery& recovery : troubles.first_recoveries)
-    fmt::print(stderr, "note: {}\n", recovery.message());
+void tell_recoveries(const RunTroubles& troubles) {
+  for (const RunRecovery& recovery : troubles.first_recoveries) fmt::print(stderr, "note: {}\n", recovery.message());
   const int more = troubles.recoveries - static_cast<int>(troubles.first_recoveries.size());
   if (more > 0) fmt::print(stderr, "note: and {} recoveries more\n", more);
 }

@@ -72,7 +72,7 @@ nlohmann::json RunStats::json(const Session& session) const {
       {"recoveries", session.troubles().recoveries},
       {"teleports", session.troubles().teleports},
       {"state_hash", fmt::format("{:016x}", session.state_hash())}};
-  for (const SessionRecovery& recovery : session.troubles().first_recoveries)
+  for (const RunRecovery& recovery : session.troubles().first_recoveries)
     result["first_recoveries"].push_back(recovery.message());
   if (session.failure()) result["failure"] = session.failure()->message();
   return result;
@@ -80,11 +80,11 @@ nlohmann::json RunStats::json(const Session& session) const {
 
 nlohmann::json RunStats::substeps_json(const Session& session) const {
   const int asked = scene_->settings.substeps;
-  const SessionTroubles& troubles = session.troubles();
+  const RunTroubles& troubles = session.troubles();
   nlohmann::json result = {{"asked", asked},
                            {"max", std::max(asked, troubles.worst_split.substeps)},
                            {"frames_split", troubles.frames_split}};
-  if (troubles.frames_split > 0) result["reason"] = troubles.worst_split_reason;
+  if (troubles.frames_split > 0) result["reason"] = session.worst_split_reason();
   return result;
 }
 
@@ -111,10 +111,10 @@ std::string RunStats::text(const Session& session) const {
                       "jitter: {:.2f} m/s2\nstate hash {:016x}\n",
                       session.collides_with_body() ? "the body" : "proxies", depth.max, depth.mean, 100 * stretch.max,
                       100 * stretch.p99, 100 * stretch.mean, jitters_.spread().mean, session.state_hash());
-  const SessionTroubles& troubles = session.troubles();
+  const RunTroubles& troubles = session.troubles();
   if (troubles.frames_split > 0)
     text += fmt::format("{} frames in more substeps than asked, at most {} in frame {} ({})\n", troubles.frames_split,
-                        troubles.worst_split.substeps, troubles.worst_split_frame, troubles.worst_split_reason);
+                        troubles.worst_split.substeps, troubles.worst_split_frame, session.worst_split_reason());
   if (troubles.teleports > 0) text += fmt::format("{} jumps of the body, garments carried along\n", troubles.teleports);
   if (troubles.recoveries > 0) text += fmt::format("{} recoveries\n", troubles.recoveries);
   return text;

@@ -45,7 +45,7 @@ struct ThreadState {
 
   PosedBody posed;
   proxies::BodyMesh body;
-  SceneReach reach;
+  WearerReach reach;
 };
 
 /// As many states as threads work at once, made when first asked for.

@@ -17,6 +17,7 @@ std::vector<CLI::Option*> add_setting_options(CLI::App& command, std::vector<Set
       const std::string no = "--no" + option.substr(1);
       options.push_back(command.add_flag_function(
           option + ",!" + no, [change](std::int64_t count) { change(count > 0); }, row.words));
+      options.back()->disable_flag_override(); // "--swept=on"
     } else {
       options.push_back(command.add_option_function<std::string>(
           option, [&row, change](const std::string& text) { change(*value_of(row, text)); }, row.words));

@@ -12,42 +12,49 @@ constexpr double k_pose_seconds = 1.0; ///< s from the rest pose to the first po
 constexpr double k_drape_drag =
     4.0; ///< 1/s; near critical for a skirt's swing (about 1 Hz), so that it settles without ringing
 
-double fastest_of(const Session& session) {
+double fastest_of(const Runtime& runtime, std::size_t garments) {
   double fastest = 0.0;
-  for (std::size_t g = 0; g < session.scene().garments.size(); ++g)
-    for (const Vec3& v : session.garment(static_cast<int>(g)).particles().velocities)
+  for (std::size_t g = 0; g < garments; ++g)
+    for (const Vec3& v : runtime.garment(static_cast<int>(g)).particles().velocities)
       fastest = std::max(fastest, v.norm());
   return fastest;
 }
 
 } // namespace
 
-DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress,
-                  const std::atomic<bool>* stop) {
-  Session session(scene);
-  session.stop_when(stop);
-  const std::vector<Transform>& rest = scene.character.skeleton.rest_local;
-  const auto first = scene.clip.key(0);
-  std::vector<Transform> local(rest.size());
+DrapeResult drape(const Wearer& wearer, std::span<const Transform> first, double longest,
+                  const std::function<bool(int, int)>& progress, const std::atomic<bool>* stop) {
+  Runtime runtime(wearer);
+  runtime.stop_when(stop);
+  const rig::Skeleton& skeleton = wearer.character.skeleton;
+  const std::vector<Transform>& rest = skeleton.rest_local;
+  std::vector<Transform> local(rest.size()), world(rest.size());
 
-  const int total = static_cast<int>(std::ceil(longest / session.frame_seconds()));
-  const int posing = std::min(total, static_cast<int>(std::ceil(k_pose_seconds / session.frame_seconds())));
+  const double seconds = wearer.settings.frame_seconds();
+  const int total = static_cast<int>(std::ceil(longest / seconds));
+  const int posing = std::min(total, static_cast<int>(std::ceil(k_pose_seconds / seconds)));
   DrapeResult result;
-  for (int frame = 0; frame < total && !session.failure(); ++frame) {
+  for (int frame = 0; frame < total && !runtime.failure(); ++frame) {
     const double u = std::min(1.0, static_cast<double>(frame + 1) / posing);
     const double s = u * u * (3.0 - 2.0 * u); // starts and stops without a jerk
     for (std::size_t j = 0; j < local.size(); ++j) local[j] = s < 1.0 ? interpolate(rest[j], first[j], s) : first[j];
-    session.advance_to(local, k_drape_drag);
-    if (session.stopped()) break;
-    result.fastest = fastest_of(session);
+    rig::model_from_local(skeleton, local, world);
+    runtime.step(world, seconds, k_drape_drag);
+    if (runtime.stopped()) break;
+    result.fastest = fastest_of(runtime, wearer.garments.size());
     if (!progress(frame + 1, total)) break;
     if (frame >= posing && result.fastest < cloth::k_settled_speed) break;
   }
-  result.seconds = session.frame() * session.frame_seconds();
-  result.failure = session.failure();
-  for (std::size_t g = 0; g < scene.garments.size(); ++g)
-    result.positions.push_back(session.garment(static_cast<int>(g)).particles().positions);
+  result.seconds = runtime.time();
+  result.failure = runtime.failure();
+  for (std::size_t g = 0; g < wearer.garments.size(); ++g)
+    result.positions.push_back(runtime.garment(static_cast<int>(g)).particles().positions);
   return result;
+}
+
+DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress,
+                  const std::atomic<bool>* stop) {
+  return drape(scene, scene.clip.key(0), longest, progress, stop);
 }
 
 std::uint64_t drape_fingerprint(const Scene& scene) {

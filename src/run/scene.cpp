@@ -4,17 +4,8 @@
 
 #include <cmath>
 #include <fmt/format.h>
-#include <stdexcept>
 
 namespace tutu::app {
-
-proxies::BodyMesh body_of(const rig::Character& character) {
-  try {
-    return {character.mesh.positions, character.mesh.triangles};
-  } catch (const std::invalid_argument& unusable) {
-    throw InputError(character.file + ": " + unusable.what(), "", "", "");
-  }
-}
 
 int frames_of(const Scene& scene) {
   const double frames = std::round(scene.clip.duration() * scene.settings.frames_per_second);

@@ -122,9 +122,8 @@ std::vector<cloth::GarmentDescription> read_garments(const SceneDescription& des
   return garments;
 }
 
-WornGarment put_on(const GarmentEntry& entry, cloth::GarmentDescription garment, const rig::Character& character) {
-  return wear(cloth::fitted(cloth::resampled(std::move(garment), entry.resolution), entry.scale, entry.offset),
-              character);
+cloth::GarmentDescription as_entered(const GarmentEntry& entry, cloth::GarmentDescription garment) {
+  return cloth::fitted(cloth::resampled(std::move(garment), entry.resolution), entry.scale, entry.offset);
 }
 
 /// The description's settings, where the garments honour what is said of them.
@@ -147,7 +146,7 @@ void apply_settings(const SceneDescription& description, LoadedScene& scene) {
 } // namespace
 
 WornGarment put_on(const GarmentEntry& entry, const rig::Character& character) {
-  return put_on(entry, cloth::read_garment(entry.file), character);
+  return wear(as_entered(entry, cloth::read_garment(entry.file)), character);
 }
 
 LoadedScene load_scene(const SceneDescription& description) {
@@ -172,11 +171,7 @@ LoadedScene load_scene(const SceneDescription& description) {
   std::vector<cloth::GarmentDescription> garments = read_garments(description, scene.proxies.size());
   for (std::size_t g = 0; g < garments.size(); ++g) {
     const GarmentEntry& entry = description.garments[g];
-    WornGarment worn =
-        within_memory(entry.file.string(), [&] { return put_on(entry, std::move(garments[g]), scene.character); });
-    scene.attachment_joints.push_back(std::move(worn.joints));
-    scene.skin_pins.push_back(std::move(worn.skin_pins));
-    scene.garments.push_back(std::move(worn.garment));
+    within_memory(entry.file.string(), [&] { scene.put_on(as_entered(entry, std::move(garments[g]))); });
   }
   apply_settings(description, scene);
   return scene;

@@ -17,8 +17,8 @@
 
 using namespace tutu;
 using namespace tutu::app;
-using ::testing::HasSubstr;
 using nlohmann::json;
+using ::testing::HasSubstr;
 
 namespace {
 
@@ -31,7 +31,8 @@ TEST(SettingsTable, EachRowReadsAndWritesOneMember) {
     row.set(settings, another(row));
     EXPECT_NE(settings, RunSettings{}) << row.name << " is its own";
     for (const SettingRow& other : settings_table())
-      EXPECT_EQ(other.get(settings), &other == &row ? another(row) : other.standard()) << row.name << ", " << other.name;
+      EXPECT_EQ(other.get(settings), &other == &row ? another(row) : other.standard())
+          << row.name << ", " << other.name;
     row.set(settings, row.standard());
     EXPECT_EQ(settings, RunSettings{}) << row.name;
     EXPECT_EQ(find_setting(row.name), &row);
@@ -66,7 +67,8 @@ TEST(SettingsTable, SchemasSayTheSame) {
   std::size_t in_scene = 0;
   for (const SettingRow& row : settings_table()) {
     json expected = schema_of(row);
-    EXPECT_EQ(grid.at(row.name), (json{{"oneOf", {expected, {{"type", "array"}, {"minItems", 1}, {"items", expected}}}}}))
+    EXPECT_EQ(grid.at(row.name),
+              (json{{"oneOf", {expected, {{"type", "array"}, {"minItems", 1}, {"items", expected}}}}}))
         << row.name;
     const std::string standard = row.is_switch() ? (row.standard() ? "true" : "false") : text_of(row, row.standard());
     expected["description"] = row.words + (" (default " + standard + ")");
@@ -106,12 +108,9 @@ struct Without {
   int value;
   bool in_springs, on_meshes, against_other_backends; ///< refused there
 };
-constexpr Without k_without[] = {{"passes", 2, true, true, false},
-                                 {"self_collision", 1, true, true, false},
-                                 {"features", 0, true, true, true},
-                                 {"features", 2, true, true, true},
-                                 {"swept", 1, true, true, true},
-                                 {"double_precision", 0, true, false, false}};
+constexpr Without k_without[] = {{"passes", 2, true, true, false},  {"self_collision", 1, true, true, false},
+                                 {"features", 0, true, true, true}, {"features", 2, true, true, true},
+                                 {"swept", 1, true, true, true},    {"double_precision", 0, true, false, false}};
 
 TEST(SettingsTable, WhatAGarmentDoesNotHonourIsTold) {
   const std::vector<cloth::Garment> grids = {woven()}, meshes = {meshed()};
@@ -166,8 +165,9 @@ protected:
 
 TEST_F(StatedSettings, InASceneAreRefusedWithTheirPlace) {
   EXPECT_EQ(refusal(R"("solver": {"passes": 3})"), "");
-  EXPECT_THAT(refusal(R"("solver": {"name": "mass_spring", "passes": 3})"),
-              HasSubstr("other.json: /solver/passes: found 3 passes, expected 1 passes, or nothing: solver mass_spring"));
+  EXPECT_THAT(
+      refusal(R"("solver": {"name": "mass_spring", "passes": 3})"),
+      HasSubstr("other.json: /solver/passes: found 3 passes, expected 1 passes, or nothing: solver mass_spring"));
   EXPECT_THAT(refusal(R"("solver": {"name": "mass_spring"}, "collision": {"self_collision": true})"),
               HasSubstr("/collision/self_collision: found self collision on"));
   EXPECT_EQ(refusal(R"("solver": {"name": "mass_spring", "passes": 1}, "collision": {"swept": false})"), "")
@@ -178,13 +178,14 @@ TEST_F(StatedSettings, InPlaceOfTheScenesAreRefusedByTheirOption) {
   EXPECT_THAT(refusal(R"("solver": {})", {"solver=mass_spring", "swept=true"}), HasSubstr("--split: found swept on"));
   EXPECT_EQ(refusal(R"("solver": {"passes": 3})", {"solver=mass_spring"}), "") << "what only that made useless";
   EXPECT_THAT(notes_, ::testing::Contains(HasSubstr("3 passes of the scene does not count")));
-  EXPECT_THAT(refusal(R"("solver": {"name": "mass_spring", "passes": 3})", {"substeps=4"}), HasSubstr("/solver/passes"));
+  EXPECT_THAT(refusal(R"("solver": {"name": "mass_spring", "passes": 3})", {"substeps=4"}),
+              HasSubstr("/solver/passes"));
 }
 
 TEST_F(StatedSettings, OfAChartAndItsCellsAreRefused) {
   write_file(folder_ / "grid.json", R"({"settings": [{"solver": ["xpbd", "mass_spring"], "passes": [1, 3]}]})");
-  const auto chart = test::run_program({"chart", scene_, "--settings", (folder_ / "grid.json").string(), "--out",
-                                        (folder_ / "chart").string()});
+  const auto chart = test::run_program(
+      {"chart", scene_, "--settings", (folder_ / "grid.json").string(), "--out", (folder_ / "chart").string()});
   EXPECT_EQ(chart.status, 2);
   EXPECT_THAT(chart.output, HasSubstr("grid.json"));
   EXPECT_THAT(chart.output, HasSubstr("found 3 passes"));

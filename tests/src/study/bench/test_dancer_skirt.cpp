@@ -160,7 +160,11 @@ TEST(DancerSkirtScene, TheSkirtIsTheStatedGrid) {
 }
 
 TEST(DancerSkirtScene, TheWaistFollowsThePelvis) {
-  DancerSkirt scene({.n = 12, .substeps = 16, .backend = proxies::Backend::brute, .motion = DancerMotion::dance});
+  DancerSkirtSetup setup;
+  setup.n = 12;
+  setup.substeps = 16;
+  setup.backend = proxies::Backend::brute;
+  DancerSkirt scene(setup);
   for (int frame = 0; frame < 40; ++frame) ASSERT_FALSE(scene.advance());
   const double t = 40.0 / 60.0, u = t * t * (3.0 - 2.0 * t), turn = 2.0 * std::numbers::pi * t;
   const double yaw = 0.8 * u * std::sin(0.5 * turn), roll = 0.12 * u * std::sin(turn);
@@ -185,11 +189,11 @@ TEST(DancerSkirtScene, TheSameRunTwiceIsTheSameToTheBit) {
 }
 
 TEST(DancerSkirtScene, StepsThatAreTooLongAreADivergence) {
-  DancerSkirt scene({.n = 30,
-                     .solver = cloth::SolverKind::mass_spring,
-                     .substeps = 1,
-                     .backend = proxies::Backend::fcl,
-                     .motion = DancerMotion::dance});
+  DancerSkirtSetup setup;
+  setup.solver = cloth::SolverKind::mass_spring;
+  setup.substeps = 1;
+  setup.backend = proxies::Backend::fcl;
+  DancerSkirt scene(setup);
   bool diverged = false;
   for (int frame = 0; frame < 120 && !diverged; ++frame) diverged = scene.advance().has_value();
   EXPECT_TRUE(diverged);

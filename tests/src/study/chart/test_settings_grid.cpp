@@ -106,7 +106,7 @@ TEST(Setting, OptionsNameWhatDiffers) {
   other.solver = cloth::SolverKind::mass_spring;
   other.adaptive_substeps = false;
   EXPECT_THAT(setting_options(setting_values(other), setting_values(own)),
-              ::testing::ElementsAre("--solver", "mass_spring", "--adaptive-substeps", "off"));
+              ::testing::ElementsAre("--solver", "mass_spring", "--no-adaptive-substeps"));
   EXPECT_EQ(difference(setting_values(other), setting_values(own)), "mass_spring, adaptive substeps off");
   EXPECT_EQ(difference(setting_values(own), setting_values(own)), "");
 }
