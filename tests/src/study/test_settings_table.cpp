@@ -86,8 +86,12 @@ TEST(SettingsTable, HelpOptionsAndColumnsAreMadeFromIt) {
   }
   for (const SettingRow& row : settings_table()) {
     EXPECT_THAT(row_columns(), ::testing::Contains(row.name));
-    EXPECT_THAT(test::run_program({"play", option_of(row) + "=magic"}).output,
-                HasSubstr(row.is_switch() ? option_of(row) : expected_of(row)));
+    const auto wrong = test::run_program({"play", option_of(row) + "=magic"});
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_THAT(wrong.output, HasSubstr(option_of(row).substr(2)));
+    if (!row.is_switch()) {
+      EXPECT_THAT(wrong.output, HasSubstr(expected_of(row)));
+    }
   }
 }
 
