@@ -223,7 +223,7 @@ template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, 
     const Wide<T> length = load(sheet.tethers.length + at);
     const Wide3<T> x = load(sheet.x, at), d = minus(x, a);
     const Wide<T> squared = dot(d, d);
-    const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_mass, block, row) + lane) > hn::Zero(tag);
     const auto is_taut = hn::And(is_free, squared > length * length);
     if (HWY_LIKELY(hn::AllFalse(tag, is_taut))) return;
     const Wide<T> broken = limits.broken * length;
@@ -238,7 +238,8 @@ template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, 
 /// Diagonals, where asked for, and weft edges between a block and the next. True as whole() is.
 template <bool k_repeats, class T>
 bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bool first_pass, Limits<T>& limits) {
-  const bool is_last = block + 1 == sheet.blocks;
+  const bool is_last = block + 1 == sheet.blocks, ends_short = has_short_lanes(sheet) && block + 2 == sheet.blocks;
+  if (ends_short) fetch_short(sheet, sheet.x);
   if (is_last) fetch_halo(sheet, sheet.x, 0);
   const auto between = [&](const WovenSprings<T>& springs, T* multipliers, int down_a, int down_b, int rows) HWY_ATTR {
     return whole(sheet, block, limits, [&]() HWY_ATTR {
@@ -248,6 +249,10 @@ bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bo
   const bool is_whole = (!with_shear || (between(sheet.falling, sheet.multipliers[2], 0, 1, sheet.rows - 1) &&
                                          between(sheet.rising, sheet.multipliers[3], 1, 0, sheet.rows - 1))) &&
                         between(sheet.weft, sheet.multipliers[1], 0, 0, sheet.rows);
+  if (ends_short) {
+    return_short(sheet, sheet.x);
+    clear_short(sheet, sheet.blocks - 1);
+  }
   if (is_last) return_halo(sheet, sheet.x, 0);
   return is_whole;
 }
@@ -267,9 +272,20 @@ bool solve_down(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int bl
 
 template <class T> void bend_all(const WovenSheetView<T>& sheet, Wide<T> per_h2) {
   const int last = sheet.blocks - 1;
-  for (int block = 0; block + 2 < sheet.blocks; ++block) bend_weft(sheet, block, per_h2);
+  const bool is_uneven = has_short_lanes(sheet);
+  for (int block = 0; block + 2 < sheet.blocks; ++block) {
+    if (is_uneven && block + 2 == last) fetch_short(sheet, sheet.x);
+    bend_weft(sheet, block, per_h2);
+  }
   fetch_halo(sheet, sheet.x, 0);
+  if (is_uneven) fetch_turned(sheet, sheet.x, 1, last + 1, sheet.long_lanes, sheet.lanes);
   bend_weft(sheet, last - 1, per_h2);
+  if (is_uneven) {
+    return_short(sheet, sheet.x);
+    return_turned(sheet, sheet.x, 1, last + 1, sheet.long_lanes, sheet.lanes);
+    clear_short(sheet, last);
+    clear_short(sheet, last + 1);
+  }
   fetch_halo(sheet, sheet.x, 1); // not before: of three blocks, block 1 is the last but one
   bend_weft(sheet, last, per_h2);
   return_halo(sheet, sheet.x, 0);
@@ -305,7 +321,9 @@ bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T
 
 template <class T> bool constraints_to_break(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
   const bool repeats = step.passes > 1 || sheet.tethers.length;
-  return repeats ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
+  const bool is_whole = repeats ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
+  if (has_short_lanes(sheet)) rest_short(sheet);
+  return is_whole;
 }
 template <class T> bool constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
   return constraints_to_break<T>(sheet, step, nullptr);

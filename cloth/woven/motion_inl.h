@@ -55,7 +55,7 @@ template <class T> void predict(const WovenSheetView<T>& sheet, const WovenStep<
   const Prediction<T> prediction(sheet, step);
   for (int block = 0; block < sheet.blocks; ++block)
     for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
-      prediction.move(at, load(sheet.x, at), load(sheet.v, at), load(row_of(sheet.inverse_mass, block, row) + lane));
+      prediction.move(at, load(sheet.x, at), load(sheet.v, at), load(row_of(sheet.own_mass, block, row) + lane));
     });
 }
 
@@ -63,7 +63,7 @@ template <class T> void predict_again(const WovenSheetView<T>& sheet, const Wove
   const Wide<T> h = set(step.h);
   for (int block = 0; block < sheet.blocks; ++block)
     for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
-      const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(Tag<T>());
+      const auto is_free = load(row_of(sheet.own_mass, block, row) + lane) > hn::Zero(Tag<T>());
       const Wide3<T> was = load(sheet.was, at), x = plus_times<T>(was, h, load(sheet.v, at));
       store({hn::IfThenElse(is_free, x.x, was.x), hn::IfThenElse(is_free, x.y, was.y),
              hn::IfThenElse(is_free, x.z, was.z)},
@@ -85,7 +85,7 @@ T finish(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int block, in
     const auto too_fast = speed > most;
     if (HWY_UNLIKELY(!hn::AllFalse(Tag<T>(), too_fast)))
       v = times(hn::IfThenElse(too_fast, hn::Sqrt(most / speed), set(T(1))), v);
-    if constexpr (k_predicts) prediction.move(at, x, v, load(row_of(sheet.inverse_mass, block, row) + lane));
+    if constexpr (k_predicts) prediction.move(at, x, v, load(row_of(sheet.own_mass, block, row) + lane));
     else store(v, sheet.v, at);
   });
   return farthest.squared();

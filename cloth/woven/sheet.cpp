@@ -6,19 +6,29 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <tuple>
 
 namespace tutu::cloth {
 namespace {
 
 constexpr std::size_t k_alignment = 64; // bytes: the widest vector
 
-/// Lanes in use: as many as there can be with at least `fewest` blocks; a ring needs them to divide its columns.
+/// Lanes in use: as many as there can be with at least `fewest` columns in each.
 int lanes_for(int columns, bool woven_shut, int fewest) {
   const int most = std::clamp(columns / fewest, 1, k_lanes);
   if (!woven_shut) return most;
-  for (int lanes = most; lanes > 1; --lanes)
-    if (columns % lanes == 0) return lanes;
-  return 1;
+  // Of those with as few blocks one that divides a ring's columns, which spares the copies; else of vectors of half a
+  // row as few as can be, the last block having long lanes alone.
+  const auto cost = [&](int lanes) {
+    const int blocks = (columns + lanes - 1) / lanes, long_lanes = columns % lanes;
+    const auto halves = [](int count) { return count > k_lanes / 2 ? 2 : 1; };
+    const int vectors = (blocks - (long_lanes > 0)) * halves(lanes) + (long_lanes > 0 ? halves(long_lanes) : 0);
+    return std::tuple(blocks, long_lanes > 0, vectors, -lanes);
+  };
+  int best = most;
+  for (int lanes = most; lanes > 0; --lanes)
+    if (cost(lanes) < cost(best)) best = lanes;
+  return best;
 }
 
 /// Whether fewer than half of the threads that are solved as wholes have a pinned particle: then most of the load goes
@@ -65,6 +75,8 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   const int fewest = view_.has_bend ? 3 : 2;
   view_.lanes = lanes_for(weave_.columns, garment.woven_shut, fewest);
   view_.blocks = std::max(fewest, (weave_.columns + view_.lanes - 1) / view_.lanes);
+  view_.long_lanes =
+      garment.woven_shut && weave_.columns % view_.lanes != 0 ? weave_.columns % view_.lanes : view_.lanes;
   view_.block_stride = static_cast<std::ptrdiff_t>(view_.rows + 1) * k_lanes; // one row of room behind each
 
   const std::size_t size = static_cast<std::size_t>(view_.blocks + 2) * view_.block_stride;
@@ -80,17 +92,19 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   view_.multipliers[0] = array(with_multipliers ? size : view_.block_stride);
   for (int k = 1; k < 4; ++k) view_.multipliers[k] = with_multipliers ? array(size) : nullptr;
 
-  for (int particle = 0; particle < garment.particle_count(); ++particle) {
-    const int row = weave_.row(particle), column = weave_.column(particle);
-    elements_.push_back(column % view_.blocks * view_.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes +
-                        column / view_.blocks);
-  }
+  elements_.resize(garment.particle_count());
+  const auto element = [&](int block, int row, int lane) {
+    return block * view_.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes + lane;
+  };
+  for (int block = 0; block < view_.blocks; ++block)
+    for (int lane = 0; lane < k_lanes; ++lane)
+      if (const int column = column_of(block, lane); column >= 0)
+        for (int row = 0; row < view_.rows; ++row) elements_[weave_.particle(row, column)] = element(block, row, lane);
   for (int block = 0; block < view_.blocks; ++block)
     for (int lane = 0; lane < k_lanes; ++lane) {
-      if (lane * view_.blocks + block < weave_.columns && lane < view_.lanes) continue;
+      if (column_of(block, lane) >= 0) continue;
       for (int row = 0; row < view_.rows; ++row) {
-        const std::ptrdiff_t element = block * view_.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes + lane;
-        empty_.push_back(element);
+        empty_.push_back(element(block, row, lane));
         twins_.push_back(elements_[weave_.particle(row, std::min(block, weave_.columns - 1))]);
       }
     }
@@ -98,6 +112,12 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   build_bends(garment);
   if (tethered) place_tethers(garment);
   set(garment.rest_positions, std::vector<Vec3>(garment.rest_positions.size(), Vec3::Zero()));
+}
+
+template <class T> int WovenSheet<T>::column_of(int block, int lane) const {
+  if (lane >= view_.lanes || (block + 1 == view_.blocks && lane >= view_.long_lanes)) return -1;
+  const int column = lane * view_.blocks - std::max(lane - view_.long_lanes, 0) + block;
+  return column < weave_.columns ? column : -1;
 }
 
 template <class T> WovenTable<T> WovenSheet<T>::table(std::vector<T> values) {
@@ -133,7 +153,18 @@ template <class T> void WovenSheet<T>::build_springs(const Garment& garment) {
   for (int i = 0; i < garment.particle_count(); ++i)
     if (!pinned[i]) weights[elements_[i]] = static_cast<T>(1.0 / garment.masses[i]);
   turned(weights);
-  view_.inverse_mass = table(weights);
+  view_.own_mass = table(weights);
+  view_.inverse_mass = view_.own_mass;
+  if (has_short_lanes(view_)) { // and behind short lanes
+    for (int number = 0; number < 2; ++number)
+      for (int row = 0; row < view_.rows; ++row)
+        for (int lane = view_.long_lanes; lane < view_.lanes; ++lane) {
+          const std::ptrdiff_t in_block = static_cast<std::ptrdiff_t>(row) * k_lanes;
+          weights[(view_.blocks - 1 + number) * view_.block_stride + in_block + lane] =
+              weights[number * view_.block_stride + in_block + (lane + 1) % view_.lanes];
+        }
+    view_.inverse_mass = table(weights);
+  }
 
   // What does not exist gives way; what lies in lanes without a column looks like the others of its row.
   struct Family {
@@ -230,7 +261,7 @@ template <class T> double WovenSheet<T>::inverse_mass(int particle) const {
   return static_cast<double>(view_.inverse_mass.data[block * view_.inverse_mass.block_stride + in_block]);
 }
 
-template <class T> void WovenSheet<T>::move_to(int particle, const Vec3& position) const {
+template <class T> void WovenSheet<T>::move_to(int particle, const Vec3& position) {
   for (int axis = 0; axis < 3; ++axis)
     view_.x[axis][elements_[particle]] = static_cast<T>(position[axis] - origin_[axis]);
 }
