@@ -71,7 +71,7 @@ HWY_INLINE void solve_spring(Wide3<T>& a, Wide3<T>& b, Wide<T> wa, Wide<T> wb, W
 template <bool k_repeats, class T>
 void solve_between(const WovenSheetView<T>& sheet, const WovenSprings<T>& springs, T* multipliers, int block,
                    int down_a, int down_b, int rows, bool first_pass, Limits<T>& limits) {
-  for_rows(sheet, block, 0, rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_columns(sheet, block, 0, rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const std::ptrdiff_t at_a = at + down_a * k_lanes, at_b = at + sheet.block_stride + down_b * k_lanes;
     Wide3<T> a = load(sheet.x, at_a), b = load(sheet.x, at_b);
     solve_spring<k_repeats, T>(a, b, load(row_of(sheet.inverse_mass, block, row + down_a) + lane),
@@ -102,7 +102,7 @@ HWY_INLINE void solve_bend(Wide3<T>& a, Wide3<T>& b, Wide3<T>& c, Wide<T> wa, Wi
 }
 
 template <class T> void bend_weft(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
-  for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_columns(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const std::ptrdiff_t at_b = at + sheet.block_stride, at_c = at_b + sheet.block_stride;
     Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
     solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
@@ -117,21 +117,20 @@ template <class T> void bend_weft(const WovenSheetView<T>& sheet, int block, Wid
 }
 
 template <class T> void bend_warp(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
+  const auto bend = [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    const std::ptrdiff_t at_b = at + k_lanes, at_c = at_b + k_lanes;
+    Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
+    solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
+                  load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+                  load(row_of(sheet.inverse_mass, block, row + 2) + lane),
+                  load(row_of(sheet.warp_bend.ratio, block, row) + lane),
+                  load(row_of(sheet.warp_bend.compliance, block, row) + lane), per_h2);
+    store(a, sheet.x, at);
+    store(b, sheet.x, at_b);
+    store(c, sheet.x, at_c);
+  };
   // Every third row: three passes in which no two triples share a particle.
-  for (int colour = 0; colour < 3; ++colour)
-    for (int row = colour; row + 2 < sheet.rows; row += 3)
-      for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
-        const std::ptrdiff_t at_b = at + k_lanes, at_c = at_b + k_lanes;
-        Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
-        solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
-                      load(row_of(sheet.inverse_mass, block, row + 1) + lane),
-                      load(row_of(sheet.inverse_mass, block, row + 2) + lane),
-                      load(row_of(sheet.warp_bend.ratio, block, row) + lane),
-                      load(row_of(sheet.warp_bend.compliance, block, row) + lane), per_h2);
-        store(a, sheet.x, at);
-        store(b, sheet.x, at_b);
-        store(c, sheet.x, at_c);
-      });
+  for (int colour = 0; colour < 3; ++colour) for_columns(sheet, block, colour, sheet.rows - 2, bend, 3);
 }
 
 // ---- warp threads
@@ -148,7 +147,7 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
   T* const n[3] = {nx, nx + field, nx + 2 * field};
   T* const right = nx + 3 * field; // of the eliminated system
   T* const upper = nx + 4 * field; // coupling to the edge below, times m
-  for (int lane = 0; lane < k_lanes; lane += width) {
+  for (int lane = 0; lane < lanes_in(sheet, block); lane += width) {
     const std::ptrdiff_t start = place(sheet, block, 0) + lane;
     Wide3<T> above = load(sheet.x, start), direction_above = {set(T(0)), set(T(0)), set(T(0))};
     Wide<T> w_above = load(row_of(sheet.inverse_mass, block, 0) + lane);
@@ -197,17 +196,17 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
 /// Gauss-Seidel over the warp edges, those that begin at even rows or those at odd ones.
 template <class T>
 void sweep_threads(const WovenSheetView<T>& sheet, int block, int parity, T* multipliers, Limits<T>& limits) {
-  for (int row = parity; row + 1 < sheet.rows; row += 2)
-    for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
-      Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
-      solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
-                            load(row_of(sheet.inverse_mass, block, row + 1) + lane),
-                            load(row_of(sheet.warp.length, block, row) + lane),
-                            load(row_of(sheet.warp.compliance, block, row) + lane),
-                            multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
-      store(a, sheet.x, at);
-      store(b, sheet.x, at + k_lanes);
-    });
+  const auto solve = [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
+    solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
+                          load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+                          load(row_of(sheet.warp.length, block, row) + lane),
+                          load(row_of(sheet.warp.compliance, block, row) + lane),
+                          multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
+    store(a, sheet.x, at);
+    store(b, sheet.x, at + k_lanes);
+  };
+  for_columns(sheet, block, parity, sheet.rows - 1, solve, 2);
 }
 
 // ---- tethers
@@ -216,14 +215,14 @@ void sweep_threads(const WovenSheetView<T>& sheet, int block, int parity, T* mul
 template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, Limits<T>& limits) {
   const Tag<T> tag;
   const hn::RebindToSigned<Tag<T>> elements;
-  for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_columns(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const auto anchor = hn::Load(elements, sheet.tethers.anchor + at);
     const Wide3<T> a = {hn::GatherIndex(tag, sheet.x[0], anchor), hn::GatherIndex(tag, sheet.x[1], anchor),
                         hn::GatherIndex(tag, sheet.x[2], anchor)};
     const Wide<T> length = load(sheet.tethers.length + at);
     const Wide3<T> x = load(sheet.x, at), d = minus(x, a);
     const Wide<T> squared = dot(d, d);
-    const auto is_free = load(row_of(sheet.own_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
     const auto is_taut = hn::And(is_free, squared > length * length);
     if (HWY_LIKELY(hn::AllFalse(tag, is_taut))) return;
     const Wide<T> broken = limits.broken * length;

@@ -93,7 +93,7 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, int block, int first, int l
     const Wide<T> squared = dot(q, q), length = k_tapered ? length_of<T>(q) : squared;
     const Wide<T> beyond = k_tapered ? length - radius : squared;
     least = hn::Min(least, beyond);
-    const auto is_free = load(row_of(sheet.own_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
     const auto is_hit = hn::And(is_free, k_tapered ? beyond < hn::Zero(tag) : squared < squared_radius);
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide<T> from_axis = k_tapered ? length : length_of<T>(q);
@@ -127,7 +127,7 @@ T contact_plane(const WovenSheetView<T>& sheet, int block, int first, int last, 
     const Wide3<T> x = load(sheet.x, at);
     const Wide<T> height = dot(x, n) - offset;
     least = hn::Min(least, height);
-    const auto is_free = load(row_of(sheet.own_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
     const auto is_hit = hn::And(is_free, height < hn::Zero(tag));
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide3<T> way = minus(x, load(sheet.was, at));
@@ -274,7 +274,7 @@ void contact_low_cells(const WovenSheetView<T>& sheet, int block, int first, int
   const T around = widest(collider) + features.around;
   const Wide<T> squared_reach = set(around * around);
   const auto width = static_cast<int>(hn::Lanes(tag));
-  const int cells = block + 1 == sheet.blocks ? sheet.long_lanes : k_lanes;
+  const int cells = lanes_in(sheet, block);
   for (int row = first; row < last; ++row)
     for (int lane = 0; lane < cells; lane += width) {
       const std::ptrdiff_t at_a = place(sheet, block, row) + lane, at_b = place(sheet, block + 1, row) + lane;
@@ -310,7 +310,7 @@ void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int 
   const int ends = collider.per_axis_squared > T(0) ? 2 : 1;
   const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
   const auto width = static_cast<int>(hn::Lanes(tag));
-  const int cells = block + 1 == sheet.blocks ? sheet.long_lanes : k_lanes;
+  const int cells = lanes_in(sheet, block);
   for (int row = first; row < last; ++row)
     for (int lane = 0; lane < cells; lane += width) {
       const bool has_below = row + 1 < sheet.rows;

@@ -61,15 +61,15 @@ template <class T> struct WovenSheetView {
   int rows = 0, blocks = 0, lanes = 0;
   int long_lanes = 0; ///< lanes, the first, that have a column in the last block too; `lanes` in all but some rings
   std::ptrdiff_t block_stride = 0;
-  T* x[3] = {};               ///< positions, m
-  T* was[3] = {};             ///< positions at the substep's start
-  T* v[3] = {};               ///< velocities, m/s
-  WovenTable<T> inverse_mass; ///< 1/kg; 0 for pinned particles; copies have that of what they are of
-  WovenTable<T> own_mass;     ///< inverse too, but 0 for copies: what moves without constraints
-  WovenSprings<T> warp;       ///< (block, row) joins row and row + 1
-  WovenSprings<T> weft;       ///< (block, row) joins block and block + 1
-  WovenSprings<T> falling;    ///< (block, row) joins it and (block + 1, row + 1)
-  WovenSprings<T> rising;     ///< (block + 1, row) and (block, row + 1)
+  T* x[3] = {};                   ///< positions, m
+  T* was[3] = {};                 ///< positions at the substep's start
+  T* v[3] = {};                   ///< velocities, m/s
+  WovenTable<T> inverse_mass;     ///< 1/kg; 0 for pinned particles; copies have that of what they are of
+  WovenTable<T> own_inverse_mass; ///< the same but 0 for copies: for motion and contacts, which are not theirs
+  WovenSprings<T> warp;           ///< (block, row) joins row and row + 1
+  WovenSprings<T> weft;           ///< (block, row) joins block and block + 1
+  WovenSprings<T> falling;        ///< (block, row) joins it and (block + 1, row + 1)
+  WovenSprings<T> rising;         ///< (block + 1, row) and (block, row + 1)
   WovenBends<T> warp_bend, weft_bend;
   bool has_shear = false, has_bend = false;
   WovenTethers<T> tethers;
@@ -77,6 +77,10 @@ template <class T> struct WovenSheetView {
   T* workspace = nullptr; ///< 5 blocks, for the line solve
 };
 
+/// Lanes, the first, that have a column in this block.
+template <class T> int lanes_in(const WovenSheetView<T>& sheet, int block) {
+  return block + 1 == sheet.blocks ? sheet.long_lanes : sheet.lanes;
+}
 template <class T> bool has_short_lanes(const WovenSheetView<T>& sheet) { return sheet.long_lanes < sheet.lanes; }
 
 /// Whether cells right of the block's columns reach a copy.

@@ -17,8 +17,8 @@ constexpr std::size_t k_alignment = 64; // bytes: the widest vector
 int lanes_for(int columns, bool woven_shut, int fewest) {
   const int most = std::clamp(columns / fewest, 1, k_lanes);
   if (!woven_shut) return most;
-  // Of those with as few blocks one that divides a ring's columns, which spares the copies; else of vectors of half a
-  // row as few as can be, the last block having long lanes alone.
+  // A ring: few blocks; of such lanes those that divide its columns, which spares the copies; of the others those with
+  // the fewest vectors of half a row, short lanes having none in the last block.
   const auto cost = [&](int lanes) {
     const int blocks = (columns + lanes - 1) / lanes, long_lanes = columns % lanes;
     const auto halves = [](int count) { return count > k_lanes / 2 ? 2 : 1; };
@@ -75,8 +75,8 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   const int fewest = view_.has_bend ? 3 : 2;
   view_.lanes = lanes_for(weave_.columns, garment.woven_shut, fewest);
   view_.blocks = std::max(fewest, (weave_.columns + view_.lanes - 1) / view_.lanes);
-  view_.long_lanes =
-      garment.woven_shut && weave_.columns % view_.lanes != 0 ? weave_.columns % view_.lanes : view_.lanes;
+  const int left_over = garment.woven_shut ? weave_.columns % view_.lanes : 0;
+  view_.long_lanes = left_over > 0 ? left_over : view_.lanes;
   view_.block_stride = static_cast<std::ptrdiff_t>(view_.rows + 1) * k_lanes; // one row of room behind each
 
   const std::size_t size = static_cast<std::size_t>(view_.blocks + 2) * view_.block_stride;
@@ -139,12 +139,13 @@ template <class T> void WovenSheet<T>::build_springs(const Garment& garment) {
   const std::size_t size = static_cast<std::size_t>(view_.blocks + 2) * view_.block_stride;
   const std::vector<std::uint8_t> pinned = pinned_flags(garment);
   const bool ring = garment.woven_shut;
-  const auto turned = [&](std::vector<T>& values) { // the halo's copies, a lane on
+  // What lies behind the lanes' ends, from `block` on: copies of blocks 0 and 1, a lane on.
+  const auto turned = [&](std::vector<T>& values, int block, int first_lane) {
     for (int number = 0; number < 2; ++number)
       for (int row = 0; row < view_.rows; ++row)
-        for (int lane = 0; lane < view_.lanes; ++lane) {
+        for (int lane = first_lane; lane < view_.lanes; ++lane) {
           const std::ptrdiff_t in_block = static_cast<std::ptrdiff_t>(row) * k_lanes;
-          values[(view_.blocks + number) * view_.block_stride + in_block + lane] =
+          values[(block + number) * view_.block_stride + in_block + lane] =
               values[number * view_.block_stride + in_block + (lane + 1) % view_.lanes];
         }
   };
@@ -152,17 +153,10 @@ template <class T> void WovenSheet<T>::build_springs(const Garment& garment) {
   std::vector<T> weights(size, T(0));
   for (int i = 0; i < garment.particle_count(); ++i)
     if (!pinned[i]) weights[elements_[i]] = static_cast<T>(1.0 / garment.masses[i]);
-  turned(weights);
-  view_.own_mass = table(weights);
-  view_.inverse_mass = view_.own_mass;
-  if (has_short_lanes(view_)) { // and behind short lanes
-    for (int number = 0; number < 2; ++number)
-      for (int row = 0; row < view_.rows; ++row)
-        for (int lane = view_.long_lanes; lane < view_.lanes; ++lane) {
-          const std::ptrdiff_t in_block = static_cast<std::ptrdiff_t>(row) * k_lanes;
-          weights[(view_.blocks - 1 + number) * view_.block_stride + in_block + lane] =
-              weights[number * view_.block_stride + in_block + (lane + 1) % view_.lanes];
-        }
+  turned(weights, view_.blocks, 0);
+  view_.own_inverse_mass = view_.inverse_mass = table(weights);
+  if (has_short_lanes(view_)) {
+    turned(weights, view_.blocks - 1, view_.long_lanes);
     view_.inverse_mass = table(weights);
   }
 
@@ -193,8 +187,8 @@ template <class T> void WovenSheet<T>::build_springs(const Garment& garment) {
         family->length[empty_[k]] = family->length[twins_[k]];
         family->compliance[empty_[k]] = family->compliance[twins_[k]];
       }
-    turned(family->length);
-    turned(family->compliance);
+    turned(family->length, view_.blocks, 0);
+    turned(family->compliance, view_.blocks, 0);
   }
   view_.warp = {table(warp.length), table(warp.compliance)};
   view_.weft = {table(weft.length), table(weft.compliance)};

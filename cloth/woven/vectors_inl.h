@@ -66,12 +66,27 @@ template <class T> HWY_INLINE const T* row_of(const WovenTable<T>& table, int bl
   return table.data + block * table.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes;
 }
 
-/// Calls f(element, lane) for each vector of the rows first..last-1 of a block: element counts from the field's start.
+/// Calls f(element, row, lane) for each vector of every `stride`-th of the rows first..last-1 of a block: element
+/// counts from the field's start.
 template <class T, class F>
-HWY_INLINE void for_rows(const WovenSheetView<T>& sheet, int block, int first, int last, const F& f) {
+HWY_INLINE void for_rows(const WovenSheetView<T>& sheet, int block, int first, int last, const F& f, int stride = 1) {
   const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
-  for (int row = first; row < last; ++row)
+  for (int row = first; row < last; row += stride)
     for (int lane = 0; lane < k_lanes; lane += width) f(place(sheet, block, row) + lane, row, lane);
+}
+
+/// The same but for vectors in whose lanes the block has no column. How many these are depends on the target: for what
+/// such lanes have no say in.
+template <class T, class F>
+HWY_INLINE void for_columns(const WovenSheetView<T>& sheet, int block, int first, int last, const F& f,
+                            int stride = 1) {
+  const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
+  if (width == k_lanes || lanes_in(sheet, block) > k_lanes - width) {
+    for_rows(sheet, block, first, last, f, stride); // a loop whose count the compiler knows
+    return;
+  }
+  for (int row = first; row < last; row += stride)
+    for (int lane = 0; lane < lanes_in(sheet, block); lane += width) f(place(sheet, block, row) + lane, row, lane);
 }
 
 /// Length of an edge, above 0.

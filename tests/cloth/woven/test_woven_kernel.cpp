@@ -262,6 +262,24 @@ TYPED_TEST(WovenKernels, OverlongEdgesAreFoundWhereverTheyAre) {
   });
 }
 
+TYPED_TEST(WovenKernels, TheFirstBrokenEdgeIsLeftAsItWasMet) {
+  using T = TypeParam;
+  this->everywhere([&](const Garment& garment) {
+    for (int i = 0; i < garment.particle_count(); i += 1 + garment.particle_count() / 15) {
+      Both<T> both(garment, 16);
+      both.sheet.move_to(i, both.sheet.position(i) + Vec3(0, 0, 100.0));
+      std::vector<T> room(static_cast<std::size_t>(6 * both.view.block_stride));
+      EXPECT_FALSE(both.kernel.constraints_to_break(both.view, step_of<T>(), room.data())) << i;
+      double most = 0.0;
+      for (const Spring& spring : garment.springs)
+        if (spring.kind != SpringKind::bend)
+          most = std::max(most,
+                          (both.sheet.position(spring.i) - both.sheet.position(spring.j)).norm() / spring.rest_length);
+      EXPECT_GT(most, 0.999 * (1.0 + k_diverged_stretch)) << i;
+    }
+  });
+}
+
 /// Near some particles: capsules and spheres that have moved and turned since the substep's start.
 std::vector<test::TwinCollider> colliders_near(const std::vector<Vec3>& points, std::mt19937_64& random, int count) {
   std::uniform_int_distribution<std::size_t> pick(0, points.size() - 1);
