@@ -71,7 +71,7 @@ HWY_INLINE void solve_spring(Wide3<T>& a, Wide3<T>& b, Wide<T> wa, Wide<T> wb, W
 template <bool k_repeats, class T>
 void solve_between(const WovenSheetView<T>& sheet, const WovenSprings<T>& springs, T* multipliers, int block,
                    int down_a, int down_b, int rows, bool first_pass, Limits<T>& limits) {
-  for_rows(sheet, block, 0, rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_columns(sheet, block, 0, rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const std::ptrdiff_t at_a = at + down_a * k_lanes, at_b = at + sheet.block_stride + down_b * k_lanes;
     Wide3<T> a = load(sheet.x, at_a), b = load(sheet.x, at_b);
     solve_spring<k_repeats, T>(a, b, load(row_of(sheet.inverse_mass, block, row + down_a) + lane),
@@ -102,7 +102,7 @@ HWY_INLINE void solve_bend(Wide3<T>& a, Wide3<T>& b, Wide3<T>& c, Wide<T> wa, Wi
 }
 
 template <class T> void bend_weft(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
-  for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_columns(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const std::ptrdiff_t at_b = at + sheet.block_stride, at_c = at_b + sheet.block_stride;
     Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
     solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
@@ -117,21 +117,20 @@ template <class T> void bend_weft(const WovenSheetView<T>& sheet, int block, Wid
 }
 
 template <class T> void bend_warp(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
+  const auto bend = [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    const std::ptrdiff_t at_b = at + k_lanes, at_c = at_b + k_lanes;
+    Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
+    solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
+                  load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+                  load(row_of(sheet.inverse_mass, block, row + 2) + lane),
+                  load(row_of(sheet.warp_bend.ratio, block, row) + lane),
+                  load(row_of(sheet.warp_bend.compliance, block, row) + lane), per_h2);
+    store(a, sheet.x, at);
+    store(b, sheet.x, at_b);
+    store(c, sheet.x, at_c);
+  };
   // Every third row: three passes in which no two triples share a particle.
-  for (int colour = 0; colour < 3; ++colour)
-    for (int row = colour; row + 2 < sheet.rows; row += 3)
-      for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
-        const std::ptrdiff_t at_b = at + k_lanes, at_c = at_b + k_lanes;
-        Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
-        solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
-                      load(row_of(sheet.inverse_mass, block, row + 1) + lane),
-                      load(row_of(sheet.inverse_mass, block, row + 2) + lane),
-                      load(row_of(sheet.warp_bend.ratio, block, row) + lane),
-                      load(row_of(sheet.warp_bend.compliance, block, row) + lane), per_h2);
-        store(a, sheet.x, at);
-        store(b, sheet.x, at_b);
-        store(c, sheet.x, at_c);
-      });
+  for (int colour = 0; colour < 3; ++colour) for_columns(sheet, block, colour, sheet.rows - 2, bend, 3);
 }
 
 // ---- warp threads
@@ -148,7 +147,7 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
   T* const n[3] = {nx, nx + field, nx + 2 * field};
   T* const right = nx + 3 * field; // of the eliminated system
   T* const upper = nx + 4 * field; // coupling to the edge below, times m
-  for (int lane = 0; lane < k_lanes; lane += width) {
+  for (int lane = 0; lane < lanes_in(sheet, block); lane += width) {
     const std::ptrdiff_t start = place(sheet, block, 0) + lane;
     Wide3<T> above = load(sheet.x, start), direction_above = {set(T(0)), set(T(0)), set(T(0))};
     Wide<T> w_above = load(row_of(sheet.inverse_mass, block, 0) + lane);
@@ -197,17 +196,17 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
 /// Gauss-Seidel over the warp edges, those that begin at even rows or those at odd ones.
 template <class T>
 void sweep_threads(const WovenSheetView<T>& sheet, int block, int parity, T* multipliers, Limits<T>& limits) {
-  for (int row = parity; row + 1 < sheet.rows; row += 2)
-    for_rows(sheet, block, row, row + 1, [&](std::ptrdiff_t at, int, int lane) HWY_ATTR {
-      Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
-      solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
-                            load(row_of(sheet.inverse_mass, block, row + 1) + lane),
-                            load(row_of(sheet.warp.length, block, row) + lane),
-                            load(row_of(sheet.warp.compliance, block, row) + lane),
-                            multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
-      store(a, sheet.x, at);
-      store(b, sheet.x, at + k_lanes);
-    });
+  const auto solve = [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+    Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
+    solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
+                          load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+                          load(row_of(sheet.warp.length, block, row) + lane),
+                          load(row_of(sheet.warp.compliance, block, row) + lane),
+                          multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
+    store(a, sheet.x, at);
+    store(b, sheet.x, at + k_lanes);
+  };
+  for_columns(sheet, block, parity, sheet.rows - 1, solve, 2);
 }
 
 // ---- tethers
@@ -216,14 +215,14 @@ void sweep_threads(const WovenSheetView<T>& sheet, int block, int parity, T* mul
 template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, Limits<T>& limits) {
   const Tag<T> tag;
   const hn::RebindToSigned<Tag<T>> elements;
-  for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_columns(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const auto anchor = hn::Load(elements, sheet.tethers.anchor + at);
     const Wide3<T> a = {hn::GatherIndex(tag, sheet.x[0], anchor), hn::GatherIndex(tag, sheet.x[1], anchor),
                         hn::GatherIndex(tag, sheet.x[2], anchor)};
     const Wide<T> length = load(sheet.tethers.length + at);
     const Wide3<T> x = load(sheet.x, at), d = minus(x, a);
     const Wide<T> squared = dot(d, d);
-    const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
     const auto is_taut = hn::And(is_free, squared > length * length);
     if (HWY_LIKELY(hn::AllFalse(tag, is_taut))) return;
     const Wide<T> broken = limits.broken * length;
@@ -238,7 +237,8 @@ template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, 
 /// Diagonals, where asked for, and weft edges between a block and the next. True as whole() is.
 template <bool k_repeats, class T>
 bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bool first_pass, Limits<T>& limits) {
-  const bool is_last = block + 1 == sheet.blocks;
+  const bool is_last = block + 1 == sheet.blocks, ends_short = has_short_lanes(sheet) && block + 2 == sheet.blocks;
+  if (ends_short) fetch_short(sheet, sheet.x);
   if (is_last) fetch_halo(sheet, sheet.x, 0);
   const auto between = [&](const WovenSprings<T>& springs, T* multipliers, int down_a, int down_b, int rows) HWY_ATTR {
     return whole(sheet, block, limits, [&]() HWY_ATTR {
@@ -248,6 +248,10 @@ bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bo
   const bool is_whole = (!with_shear || (between(sheet.falling, sheet.multipliers[2], 0, 1, sheet.rows - 1) &&
                                          between(sheet.rising, sheet.multipliers[3], 1, 0, sheet.rows - 1))) &&
                         between(sheet.weft, sheet.multipliers[1], 0, 0, sheet.rows);
+  if (ends_short) {
+    return_short(sheet, sheet.x);
+    clear_short(sheet, sheet.blocks - 1);
+  }
   if (is_last) return_halo(sheet, sheet.x, 0);
   return is_whole;
 }
@@ -267,9 +271,20 @@ bool solve_down(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int bl
 
 template <class T> void bend_all(const WovenSheetView<T>& sheet, Wide<T> per_h2) {
   const int last = sheet.blocks - 1;
-  for (int block = 0; block + 2 < sheet.blocks; ++block) bend_weft(sheet, block, per_h2);
+  const bool is_uneven = has_short_lanes(sheet);
+  for (int block = 0; block + 2 < sheet.blocks; ++block) {
+    if (is_uneven && block + 2 == last) fetch_short(sheet, sheet.x);
+    bend_weft(sheet, block, per_h2);
+  }
   fetch_halo(sheet, sheet.x, 0);
+  if (is_uneven) fetch_turned(sheet, sheet.x, 1, last + 1, sheet.long_lanes, sheet.lanes);
   bend_weft(sheet, last - 1, per_h2);
+  if (is_uneven) {
+    return_short(sheet, sheet.x);
+    return_turned(sheet, sheet.x, 1, last + 1, sheet.long_lanes, sheet.lanes);
+    clear_short(sheet, last);
+    clear_short(sheet, last + 1);
+  }
   fetch_halo(sheet, sheet.x, 1); // not before: of three blocks, block 1 is the last but one
   bend_weft(sheet, last, per_h2);
   return_halo(sheet, sheet.x, 0);
@@ -305,7 +320,9 @@ bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T
 
 template <class T> bool constraints_to_break(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
   const bool repeats = step.passes > 1 || sheet.tethers.length;
-  return repeats ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
+  const bool is_whole = repeats ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
+  if (has_short_lanes(sheet)) rest_short(sheet);
+  return is_whole;
 }
 template <class T> bool constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
   return constraints_to_break<T>(sheet, step, nullptr);

@@ -93,7 +93,7 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, int block, int first, int l
     const Wide<T> squared = dot(q, q), length = k_tapered ? length_of<T>(q) : squared;
     const Wide<T> beyond = k_tapered ? length - radius : squared;
     least = hn::Min(least, beyond);
-    const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
     const auto is_hit = hn::And(is_free, k_tapered ? beyond < hn::Zero(tag) : squared < squared_radius);
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide<T> from_axis = k_tapered ? length : length_of<T>(q);
@@ -127,7 +127,7 @@ T contact_plane(const WovenSheetView<T>& sheet, int block, int first, int last, 
     const Wide3<T> x = load(sheet.x, at);
     const Wide<T> height = dot(x, n) - offset;
     least = hn::Min(least, height);
-    const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
     const auto is_hit = hn::And(is_free, height < hn::Zero(tag));
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide3<T> way = minus(x, load(sheet.was, at));
@@ -274,13 +274,14 @@ void contact_low_cells(const WovenSheetView<T>& sheet, int block, int first, int
   const T around = widest(collider) + features.around;
   const Wide<T> squared_reach = set(around * around);
   const auto width = static_cast<int>(hn::Lanes(tag));
+  const int cells = lanes_in(sheet, block);
   for (int row = first; row < last; ++row)
-    for (int lane = 0; lane < k_lanes; lane += width) {
+    for (int lane = 0; lane < cells; lane += width) {
       const std::ptrdiff_t at_a = place(sheet, block, row) + lane, at_b = place(sheet, block + 1, row) + lane;
       const Wide3<T> m = minus(times(half, plus(load(sheet.x, at_a), load(sheet.x, at_b))), c.a);
       const Wide3<T> away = minus_times<T>(m, clamped<T>(dot(m, c.axis) * c.per_axis_squared), c.axis);
-      const auto near =
-          dot(away, away) < squared_reach; // each lane for itself: the answer must not depend on how many there are
+      // Each lane for itself: the answer must not depend on how many there are.
+      const auto near = hn::And(dot(away, away) < squared_reach, hn::Iota(tag, lane) < set(static_cast<T>(cells)));
       if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
       Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
       const auto exists = hn::And(near, load(row_of(sheet.weft.compliance, block, row) + lane) < real);
@@ -309,8 +310,9 @@ void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int 
   const int ends = collider.per_axis_squared > T(0) ? 2 : 1;
   const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
   const auto width = static_cast<int>(hn::Lanes(tag));
+  const int cells = lanes_in(sheet, block);
   for (int row = first; row < last; ++row)
-    for (int lane = 0; lane < k_lanes; lane += width) {
+    for (int lane = 0; lane < cells; lane += width) {
       const bool has_below = row + 1 < sheet.rows;
       Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
       Corner<T> d = has_below ? corner(sheet, block, row + 1, lane) : a;
@@ -324,7 +326,7 @@ void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int 
                             set(T(1e-6));
       const Wide<T> squared_reach = reach * reach;
       const Wide3<T> away = minus_times<T>(m, clamped<T>(dot(m, c.axis) * c.per_axis_squared), c.axis);
-      const auto near = dot(away, away) < squared_reach;
+      const auto near = hn::And(dot(away, away) < squared_reach, hn::Iota(tag, lane) < set(static_cast<T>(cells)));
       if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
 
       // Each feature is looked at where the ones before it left its corners.

@@ -145,7 +145,7 @@ template <class T> void WovenContacts<T>::place(const Vec3& origin, double s, do
 }
 
 template <class T>
-bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel<T>& kernel, const WovenSheet<T>& sheet,
+bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel<T>& kernel, WovenSheet<T>& sheet,
                                double s, double h) {
   const WovenSheetView<T>& view = sheet.view();
   place(sheet.origin(), s, h);
@@ -192,7 +192,7 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
   return true;
 }
 
-template <class T> void WovenContacts<T>::sweep(const WovenSheet<T>& sheet, const Tile& tile, const Pair& pair) {
+template <class T> void WovenContacts<T>::sweep(WovenSheet<T>& sheet, const Tile& tile, const Pair& pair) {
   SweptCollider collider;
   collider.start = placed_before_[pair.collider];
   collider.end = placed_[pair.collider];
@@ -240,7 +240,7 @@ template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& ke
       const Pair& pair = pairs_[p];
       const double gap = pair.wake - tile.travelled - collider_travel_[pair.collider];
       if (!(pair.features.wide || pair.in_haste) || gap > (pair.in_haste ? tile.reach : reach_of(tile, pair))) continue;
-      if (tile.block + 1 == view.blocks && !has_halo) {
+      if (!has_halo && needs_halo(view, tile.block)) {
         kernel.fetch_halo(view);
         has_halo = true;
       }

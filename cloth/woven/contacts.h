@@ -31,8 +31,7 @@ public:
 
   /// Puts the colliders to `s` in (0, 1] of the frame, `h` seconds after the last call, and pushes the cloth out of
   /// them. Returns false when a particle's place is no number.
-  bool resolve(proxies::CollisionQuery& query, const WovenKernel<T>& kernel, const WovenSheet<T>& sheet, double s,
-               double h);
+  bool resolve(proxies::CollisionQuery& query, const WovenKernel<T>& kernel, WovenSheet<T>& sheet, double s, double h);
 
   /// After resolve: velocities by `kernel`, and how far each tile went. Returns false like resolve.
   bool finish(WovenFinish<T> kernel, const WovenSheetView<T>& view, const WovenStep<T>& step);
@@ -63,7 +62,7 @@ private:
 
   void find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet);
   void place(const Vec3& origin, double s, double h);
-  void sweep(const WovenSheet<T>& sheet, const Tile& tile, const Pair& pair);
+  void sweep(WovenSheet<T>& sheet, const Tile& tile, const Pair& pair);
   void resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view);
   /// Low cells are looked for within a fifth more than they are at rest, others within k_cell_stretch, m.
   static double reach_of(const Tile& tile, const Pair& pair) {

@@ -13,10 +13,17 @@ HWY_BEFORE_NAMESPACE();
 namespace tutu::cloth::HWY_NAMESPACE {
 
 template <class T> void fetch(const WovenSheetView<T>& sheet) {
-  fetch_halo(sheet, sheet.x, 0);
-  fetch_halo(sheet, sheet.was, 0);
+  for (T* const* field : {sheet.x, sheet.was}) {
+    if (has_short_lanes(sheet)) fetch_short(sheet, field);
+    fetch_halo(sheet, field, 0);
+  }
 }
-template <class T> void give_back(const WovenSheetView<T>& sheet) { return_halo(sheet, sheet.x, 0); }
+template <class T> void give_back(const WovenSheetView<T>& sheet) {
+  return_halo(sheet, sheet.x, 0);
+  if (!has_short_lanes(sheet)) return;
+  return_short(sheet, sheet.x);
+  rest_short(sheet);
+}
 
 template <class T> WovenKernel<T> kernel() {
   return {hwy::TargetName(HWY_TARGET), &predict<T>,       &constraints<T>,

@@ -1,11 +1,21 @@
 // The inner loops of cloth made of threads, on plain arrays: what WovenSheet hands to the code that is compiled once
 // for each SIMD target, in float and in double. Private to the folder.
 //
-// Layout. Columns are dealt to k_lanes lanes in runs: column j is lane j / blocks of block j % blocks. The 16 columns
-// of a block are therefore far apart on the sheet and share no constraint, and the weft neighbour of a whole block is
-// simply the next block. Element (block, row, lane) of an array is at block * block_stride + row * k_lanes + lane. The
-// neighbour of the last block is block 0 with its lanes turned by one: two blocks behind the last (halo 0 and 1) are
-// room for copies of block 0 and 1 turned so.
+// Layout. Columns are dealt to k_lanes lanes in runs of neighbours, one a block. The 16 columns of a block are
+// therefore far apart on the sheet and share no constraint, and the weft neighbour of a whole block is simply the next
+// block. Element (block, row, lane) of an array is at block * block_stride + row * k_lanes + lane. The neighbour of the
+// last block is block 0 with its lanes turned by one: two blocks behind the last (halo 0 and 1) are room for copies of
+// block 0 and 1 turned so.
+//
+// A ring whose columns the lanes do not divide has runs of `blocks` columns in its first `long_lanes` lanes, and one
+// less in the others, the short ones. What comes after a short run stands one block nearer: its place in the last block
+// holds, while constraints that reach there are solved, a copy of (block 0, next lane), and halo 0 one of (block 1,
+// next lane). For the rest of the time, and for all that begins at the last block, these places hold no cloth.
+//
+//   11 columns, 3 lanes:  block   0  1  2  3  halo 0  1
+//                         lane 0  0  1  2  3       4  5    long
+//                         lane 1  4  5  6  7       8  9    long
+//                         lane 2  8  9 10 (0)     (1)      short
 //
 // Lanes without a column hold copies of lane 0 at rest with inverse mass 0; constraints that do not exist have the
 // compliance k_no_constraint.
@@ -49,21 +59,34 @@ template <class T> struct WovenTethers {
 /// A sheet. Positions are in metres from an origin near the garment; arrays are aligned to 64 bytes.
 template <class T> struct WovenSheetView {
   int rows = 0, blocks = 0, lanes = 0;
+  int long_lanes = 0; ///< lanes, the first, that have a column in the last block too; `lanes` in all but some rings
   std::ptrdiff_t block_stride = 0;
-  T* x[3] = {};               ///< positions, m
-  T* was[3] = {};             ///< positions at the substep's start
-  T* v[3] = {};               ///< velocities, m/s
-  WovenTable<T> inverse_mass; ///< 1/kg; 0 for pinned particles
-  WovenSprings<T> warp;       ///< (block, row) joins row and row + 1
-  WovenSprings<T> weft;       ///< (block, row) joins block and block + 1
-  WovenSprings<T> falling;    ///< (block, row) joins it and (block + 1, row + 1)
-  WovenSprings<T> rising;     ///< (block + 1, row) and (block, row + 1)
+  T* x[3] = {};                   ///< positions, m
+  T* was[3] = {};                 ///< positions at the substep's start
+  T* v[3] = {};                   ///< velocities, m/s
+  WovenTable<T> inverse_mass;     ///< 1/kg; 0 for pinned particles; copies have that of what they are of
+  WovenTable<T> own_inverse_mass; ///< the same but 0 for copies: for motion and contacts, which are not theirs
+  WovenSprings<T> warp;           ///< (block, row) joins row and row + 1
+  WovenSprings<T> weft;           ///< (block, row) joins block and block + 1
+  WovenSprings<T> falling;        ///< (block, row) joins it and (block + 1, row + 1)
+  WovenSprings<T> rising;         ///< (block + 1, row) and (block, row + 1)
   WovenBends<T> warp_bend, weft_bend;
   bool has_shear = false, has_bend = false;
   WovenTethers<T> tethers;
   T* multipliers[4] = {}; ///< of warp, weft, falling, rising: used when a substep has more than one pass, or tethers
   T* workspace = nullptr; ///< 5 blocks, for the line solve
 };
+
+/// Lanes, the first, that have a column in this block.
+template <class T> int lanes_in(const WovenSheetView<T>& sheet, int block) {
+  return block + 1 == sheet.blocks ? sheet.long_lanes : sheet.lanes;
+}
+template <class T> bool has_short_lanes(const WovenSheetView<T>& sheet) { return sheet.long_lanes < sheet.lanes; }
+
+/// Whether cells right of the block's columns reach a copy.
+template <class T> bool needs_halo(const WovenSheetView<T>& sheet, int block) {
+  return block + (has_short_lanes(sheet) ? 2 : 1) >= sheet.blocks;
+}
 
 template <class T> struct WovenStep {
   T h = 0;                ///< s
@@ -142,7 +165,8 @@ template <class T> struct WovenKernel {
   T (*contact_plane)(Sheet, int block, int first, int last, const WovenPlane<T>&, std::int64_t* contacts);
 
   /// Edges and faces of the cells between a block and the next, from row `first` to the one below `last` - 1. Before
-  /// the last block's the halo must be fetched (positions and starts), and given back after it.
+  /// those of the first block that needs_halo() the halo must be fetched (positions and starts), and given back after
+  /// the last block's.
   void (*fetch_halo)(Sheet);
   void (*contact_cells)(Sheet, int block, int first, int last, const WovenCollider<T>&, const CellFeatures<T>& features,
                         std::int64_t* contacts);

@@ -54,16 +54,17 @@ private:
 template <class T> void predict(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
   const Prediction<T> prediction(sheet, step);
   for (int block = 0; block < sheet.blocks; ++block)
-    for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
-      prediction.move(at, load(sheet.x, at), load(sheet.v, at), load(row_of(sheet.inverse_mass, block, row) + lane));
+    for_columns(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+      prediction.move(at, load(sheet.x, at), load(sheet.v, at),
+                      load(row_of(sheet.own_inverse_mass, block, row) + lane));
     });
 }
 
 template <class T> void predict_again(const WovenSheetView<T>& sheet, const WovenStep<T>& step) {
   const Wide<T> h = set(step.h);
   for (int block = 0; block < sheet.blocks; ++block)
-    for_rows(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
-      const auto is_free = load(row_of(sheet.inverse_mass, block, row) + lane) > hn::Zero(Tag<T>());
+    for_columns(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+      const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(Tag<T>());
       const Wide3<T> was = load(sheet.was, at), x = plus_times<T>(was, h, load(sheet.v, at));
       store({hn::IfThenElse(is_free, x.x, was.x), hn::IfThenElse(is_free, x.y, was.y),
              hn::IfThenElse(is_free, x.z, was.z)},
@@ -76,7 +77,7 @@ T finish(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int block, in
   const Wide<T> h = set(step.h), per_h = set(T(1) / step.h), most = set(step.fastest * step.fastest);
   const Prediction<T> prediction(sheet, step);
   Farthest<T> farthest;
-  for_rows(sheet, block, first, last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_columns(sheet, block, first, last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const Wide3<T> x = load(sheet.x, at), was = load(sheet.was, at);
     Wide3<T> v = load(sheet.v, at);
     farthest.add(minus(x, was));
@@ -85,7 +86,7 @@ T finish(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int block, in
     const auto too_fast = speed > most;
     if (HWY_UNLIKELY(!hn::AllFalse(Tag<T>(), too_fast)))
       v = times(hn::IfThenElse(too_fast, hn::Sqrt(most / speed), set(T(1))), v);
-    if constexpr (k_predicts) prediction.move(at, x, v, load(row_of(sheet.inverse_mass, block, row) + lane));
+    if constexpr (k_predicts) prediction.move(at, x, v, load(row_of(sheet.own_inverse_mass, block, row) + lane));
     else store(v, sheet.v, at);
   });
   return farthest.squared();
@@ -93,8 +94,9 @@ T finish(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int block, in
 
 template <class T> T farthest(const WovenSheetView<T>& sheet, int block, int first, int last) {
   Farthest<T> farthest;
-  for_rows(sheet, block, first, last,
-           [&](std::ptrdiff_t at, int, int) HWY_ATTR { farthest.add(minus(load(sheet.x, at), load(sheet.was, at))); });
+  for_columns(sheet, block, first, last, [&](std::ptrdiff_t at, int, int) HWY_ATTR {
+    farthest.add(minus(load(sheet.x, at), load(sheet.was, at)));
+  });
   return farthest.squared();
 }
 

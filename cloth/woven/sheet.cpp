@@ -6,19 +6,29 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <tuple>
 
 namespace tutu::cloth {
 namespace {
 
 constexpr std::size_t k_alignment = 64; // bytes: the widest vector
 
-/// Lanes in use: as many as there can be with at least `fewest` blocks; a ring needs them to divide its columns.
+/// Lanes in use: as many as there can be with at least `fewest` columns in each.
 int lanes_for(int columns, bool woven_shut, int fewest) {
   const int most = std::clamp(columns / fewest, 1, k_lanes);
   if (!woven_shut) return most;
-  for (int lanes = most; lanes > 1; --lanes)
-    if (columns % lanes == 0) return lanes;
-  return 1;
+  // A ring: few blocks; of such lanes those that divide its columns, which spares the copies; of the others those with
+  // the fewest vectors of half a row, short lanes having none in the last block.
+  const auto cost = [&](int lanes) {
+    const int blocks = (columns + lanes - 1) / lanes, long_lanes = columns % lanes;
+    const auto halves = [](int count) { return count > k_lanes / 2 ? 2 : 1; };
+    const int vectors = (blocks - (long_lanes > 0)) * halves(lanes) + (long_lanes > 0 ? halves(long_lanes) : 0);
+    return std::tuple(blocks, long_lanes > 0, vectors, -lanes);
+  };
+  int best = most;
+  for (int lanes = most; lanes > 0; --lanes)
+    if (cost(lanes) < cost(best)) best = lanes;
+  return best;
 }
 
 /// Whether fewer than half of the threads that are solved as wholes have a pinned particle: then most of the load goes
@@ -65,6 +75,8 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   const int fewest = view_.has_bend ? 3 : 2;
   view_.lanes = lanes_for(weave_.columns, garment.woven_shut, fewest);
   view_.blocks = std::max(fewest, (weave_.columns + view_.lanes - 1) / view_.lanes);
+  const int left_over = garment.woven_shut ? weave_.columns % view_.lanes : 0;
+  view_.long_lanes = left_over > 0 ? left_over : view_.lanes;
   view_.block_stride = static_cast<std::ptrdiff_t>(view_.rows + 1) * k_lanes; // one row of room behind each
 
   const std::size_t size = static_cast<std::size_t>(view_.blocks + 2) * view_.block_stride;
@@ -80,17 +92,19 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   view_.multipliers[0] = array(with_multipliers ? size : view_.block_stride);
   for (int k = 1; k < 4; ++k) view_.multipliers[k] = with_multipliers ? array(size) : nullptr;
 
-  for (int particle = 0; particle < garment.particle_count(); ++particle) {
-    const int row = weave_.row(particle), column = weave_.column(particle);
-    elements_.push_back(column % view_.blocks * view_.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes +
-                        column / view_.blocks);
-  }
+  elements_.resize(garment.particle_count());
+  const auto element = [&](int block, int row, int lane) {
+    return block * view_.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes + lane;
+  };
+  for (int block = 0; block < view_.blocks; ++block)
+    for (int lane = 0; lane < k_lanes; ++lane)
+      if (const int column = column_of(block, lane); column >= 0)
+        for (int row = 0; row < view_.rows; ++row) elements_[weave_.particle(row, column)] = element(block, row, lane);
   for (int block = 0; block < view_.blocks; ++block)
     for (int lane = 0; lane < k_lanes; ++lane) {
-      if (lane * view_.blocks + block < weave_.columns && lane < view_.lanes) continue;
+      if (column_of(block, lane) >= 0) continue;
       for (int row = 0; row < view_.rows; ++row) {
-        const std::ptrdiff_t element = block * view_.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes + lane;
-        empty_.push_back(element);
+        empty_.push_back(element(block, row, lane));
         twins_.push_back(elements_[weave_.particle(row, std::min(block, weave_.columns - 1))]);
       }
     }
@@ -98,6 +112,12 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   build_bends(garment);
   if (tethered) place_tethers(garment);
   set(garment.rest_positions, std::vector<Vec3>(garment.rest_positions.size(), Vec3::Zero()));
+}
+
+template <class T> int WovenSheet<T>::column_of(int block, int lane) const {
+  if (lane >= view_.lanes || (block + 1 == view_.blocks && lane >= view_.long_lanes)) return -1;
+  const int column = lane * view_.blocks - std::max(lane - view_.long_lanes, 0) + block;
+  return column < weave_.columns ? column : -1;
 }
 
 template <class T> WovenTable<T> WovenSheet<T>::table(std::vector<T> values) {
@@ -119,12 +139,13 @@ template <class T> void WovenSheet<T>::build_springs(const Garment& garment) {
   const std::size_t size = static_cast<std::size_t>(view_.blocks + 2) * view_.block_stride;
   const std::vector<std::uint8_t> pinned = pinned_flags(garment);
   const bool ring = garment.woven_shut;
-  const auto turned = [&](std::vector<T>& values) { // the halo's copies, a lane on
+  // What lies behind the lanes' ends, from `block` on: copies of blocks 0 and 1, a lane on.
+  const auto turned = [&](std::vector<T>& values, int block, int first_lane) {
     for (int number = 0; number < 2; ++number)
       for (int row = 0; row < view_.rows; ++row)
-        for (int lane = 0; lane < view_.lanes; ++lane) {
+        for (int lane = first_lane; lane < view_.lanes; ++lane) {
           const std::ptrdiff_t in_block = static_cast<std::ptrdiff_t>(row) * k_lanes;
-          values[(view_.blocks + number) * view_.block_stride + in_block + lane] =
+          values[(block + number) * view_.block_stride + in_block + lane] =
               values[number * view_.block_stride + in_block + (lane + 1) % view_.lanes];
         }
   };
@@ -132,8 +153,12 @@ template <class T> void WovenSheet<T>::build_springs(const Garment& garment) {
   std::vector<T> weights(size, T(0));
   for (int i = 0; i < garment.particle_count(); ++i)
     if (!pinned[i]) weights[elements_[i]] = static_cast<T>(1.0 / garment.masses[i]);
-  turned(weights);
-  view_.inverse_mass = table(weights);
+  turned(weights, view_.blocks, 0);
+  view_.own_inverse_mass = view_.inverse_mass = table(weights);
+  if (has_short_lanes(view_)) {
+    turned(weights, view_.blocks - 1, view_.long_lanes);
+    view_.inverse_mass = table(weights);
+  }
 
   // What does not exist gives way; what lies in lanes without a column looks like the others of its row.
   struct Family {
@@ -162,8 +187,8 @@ template <class T> void WovenSheet<T>::build_springs(const Garment& garment) {
         family->length[empty_[k]] = family->length[twins_[k]];
         family->compliance[empty_[k]] = family->compliance[twins_[k]];
       }
-    turned(family->length);
-    turned(family->compliance);
+    turned(family->length, view_.blocks, 0);
+    turned(family->compliance, view_.blocks, 0);
   }
   view_.warp = {table(warp.length), table(warp.compliance)};
   view_.weft = {table(weft.length), table(weft.compliance)};
@@ -230,7 +255,7 @@ template <class T> double WovenSheet<T>::inverse_mass(int particle) const {
   return static_cast<double>(view_.inverse_mass.data[block * view_.inverse_mass.block_stride + in_block]);
 }
 
-template <class T> void WovenSheet<T>::move_to(int particle, const Vec3& position) const {
+template <class T> void WovenSheet<T>::move_to(int particle, const Vec3& position) {
   for (int axis = 0; axis < 3; ++axis)
     view_.x[axis][elements_[particle]] = static_cast<T>(position[axis] - origin_[axis]);
 }

@@ -60,9 +60,10 @@ public:
   std::ptrdiff_t element_of(int particle) const { return elements_[particle]; }
   Vec3 position(int particle) const { return at(view_.x, particle) + origin_; }
   Vec3 start_position(int particle) const { return at(view_.was, particle) + origin_; }
-  double inverse_mass(int particle) const; ///< 1/kg, 0 for pinned particles
+  double inverse_mass(int particle) const;  ///< 1/kg, 0 for pinned particles
+  int column_of(int block, int lane) const; ///< of the weave; -1 where there is none
   bool is_ring() const { return garment_->woven_shut; }
-  void move_to(int particle, const Vec3& position) const;
+  void move_to(int particle, const Vec3& position);
   /// As a pinned particle: at `position` with the velocity that takes it there in h.
   void pin_to(int particle, const Vec3& position, double h);
   void set_velocity(int particle, const Vec3& velocity);

@@ -25,7 +25,7 @@ constexpr double k_touching = 1e-5;
 
 template <class T> class TileSweep {
 public:
-  TileSweep(const WovenSheet<T>& sheet, const SweptCollider& collider) : sheet_(sheet), collider_(collider) {}
+  TileSweep(WovenSheet<T>& sheet, const SweptCollider& collider) : sheet_(sheet), collider_(collider) {}
 
   void particle(int i) {
     if (!(sheet_.inverse_mass(i) > 0.0)) return;
@@ -72,7 +72,7 @@ private:
   /// Deeper at the first touch than touching is: the step began so.
   bool is_inside(const proxies::Contact& contact) const { return contact.distance < collider_.offset - k_touching; }
 
-  const WovenSheet<T>& sheet_;
+  WovenSheet<T>& sheet_;
   const SweptCollider& collider_;
   std::int64_t count_ = 0;
 };
@@ -80,20 +80,20 @@ private:
 } // namespace
 
 template <class T>
-std::int64_t sweep_tile(const WovenSheet<T>& sheet, int block, int first, int last, const SweptCollider& collider,
+std::int64_t sweep_tile(WovenSheet<T>& sheet, int block, int first, int last, const SweptCollider& collider,
                         bool cells) {
   const WovenSheetView<T>& view = sheet.view();
   const Weave& weave = sheet.weave();
   TileSweep<T> sweep(sheet, collider);
   for (int row = first; row < last; ++row)
     for (int lane = 0; lane < view.lanes; ++lane) {
-      const int column = lane * view.blocks + block;
-      if (column < weave.columns) sweep.particle(weave.particle(row, column));
+      const int column = sheet.column_of(block, lane);
+      if (column >= 0) sweep.particle(weave.particle(row, column));
     }
   for (int row = first; cells && row < std::min(last, weave.rows - 1); ++row)
     for (int lane = 0; lane < view.lanes; ++lane) {
-      const int column = lane * view.blocks + block;
-      if (column >= (sheet.is_ring() ? weave.columns : weave.columns - 1)) continue;
+      const int column = sheet.column_of(block, lane);
+      if (column < 0 || (column == weave.columns - 1 && !sheet.is_ring())) continue;
       const int right = (column + 1) % weave.columns;
       const int a = weave.particle(row, column), b = weave.particle(row, right);
       const int c = weave.particle(row + 1, column), d = weave.particle(row + 1, right);
@@ -103,7 +103,7 @@ std::int64_t sweep_tile(const WovenSheet<T>& sheet, int block, int first, int la
   return sweep.count();
 }
 
-template std::int64_t sweep_tile(const WovenSheet<float>&, int, int, int, const SweptCollider&, bool);
-template std::int64_t sweep_tile(const WovenSheet<double>&, int, int, int, const SweptCollider&, bool);
+template std::int64_t sweep_tile(WovenSheet<float>&, int, int, int, const SweptCollider&, bool);
+template std::int64_t sweep_tile(WovenSheet<double>&, int, int, int, const SweptCollider&, bool);
 
 } // namespace tutu::cloth

@@ -21,7 +21,7 @@ struct SweptCollider {
 /// through the point of touch, moved on with the surface. The contacts at the end of the substep go on from there.
 /// Plain and in double: it is asked for seldom. Returns how many were put back.
 template <class T>
-std::int64_t sweep_tile(const WovenSheet<T>& sheet, int block, int first, int last, const SweptCollider& collider,
+std::int64_t sweep_tile(WovenSheet<T>& sheet, int block, int first, int last, const SweptCollider& collider,
                         bool cells);
 
 } // namespace tutu::cloth

@@ -66,12 +66,27 @@ template <class T> HWY_INLINE const T* row_of(const WovenTable<T>& table, int bl
   return table.data + block * table.block_stride + static_cast<std::ptrdiff_t>(row) * k_lanes;
 }
 
-/// Calls f(element, lane) for each vector of the rows first..last-1 of a block: element counts from the field's start.
+/// Calls f(element, row, lane) for each vector of every `stride`-th of the rows first..last-1 of a block: element
+/// counts from the field's start.
 template <class T, class F>
-HWY_INLINE void for_rows(const WovenSheetView<T>& sheet, int block, int first, int last, const F& f) {
+HWY_INLINE void for_rows(const WovenSheetView<T>& sheet, int block, int first, int last, const F& f, int stride = 1) {
   const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
-  for (int row = first; row < last; ++row)
+  for (int row = first; row < last; row += stride)
     for (int lane = 0; lane < k_lanes; lane += width) f(place(sheet, block, row) + lane, row, lane);
+}
+
+/// The same but for vectors in whose lanes the block has no column. How many these are depends on the target: for what
+/// such lanes have no say in.
+template <class T, class F>
+HWY_INLINE void for_columns(const WovenSheetView<T>& sheet, int block, int first, int last, const F& f,
+                            int stride = 1) {
+  const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
+  if (width == k_lanes || lanes_in(sheet, block) > k_lanes - width) {
+    for_rows(sheet, block, first, last, f, stride); // a loop whose count the compiler knows
+    return;
+  }
+  for (int row = first; row < last; row += stride)
+    for (int lane = 0; lane < lanes_in(sheet, block); lane += width) f(place(sheet, block, row) + lane, row, lane);
 }
 
 /// Length of an edge, above 0.
@@ -83,8 +98,84 @@ template <class T> HWY_INLINE Wide<T> length_of(const Wide3<T>& d) {
 
 // ---- the ring's end
 
-/// Halo `number` takes the lanes of block `number` turned by one; lanes without a column those of the last block, next
-/// to which nothing is too long.
+/// Calls f(at, mask) for each vector of lanes first..last-1 in all rows of a block: `at` counts from its start.
+template <class T, class F> HWY_INLINE void for_lanes(const WovenSheetView<T>& sheet, int first, int last, const F& f) {
+  const Tag<T> tag;
+  const auto width = static_cast<int>(hn::Lanes(tag));
+  for (int lane = first / width * width; lane < last; lane += width) {
+    const Wide<T> numbers = hn::Iota(tag, lane);
+    const auto mask = hn::And(numbers >= set(static_cast<T>(first)), numbers < set(static_cast<T>(last)));
+    const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(sheet.rows) * k_lanes;
+    for (std::ptrdiff_t at = lane; at < count; at += k_lanes) f(at, mask);
+  }
+}
+
+/// Lanes first..last-1 of a block become copies of those one lane on in block `source`.
+template <class T>
+void fetch_turned(const WovenSheetView<T>& sheet, T* const* field, int source, int block, int first, int last) {
+  const Tag<T> tag;
+  for (int axis = 0; axis < 3; ++axis) {
+    const T* from = field[axis] + place(sheet, source, 0);
+    T* to = field[axis] + place(sheet, block, 0);
+    for_lanes(sheet, first, last, [&](std::ptrdiff_t at, auto mask) HWY_ATTR {
+      hn::Store(hn::IfThenElse(mask, hn::LoadU(tag, from + at + 1), load(to + at)), tag, to + at);
+    });
+    if (last == sheet.lanes)
+      for (int row = 0; row < sheet.rows; ++row) to[row * k_lanes + last - 1] = from[row * k_lanes];
+  }
+}
+
+/// And back.
+template <class T>
+void return_turned(const WovenSheetView<T>& sheet, T* const* field, int source, int block, int first, int last) {
+  const Tag<T> tag;
+  for (int axis = 0; axis < 3; ++axis) {
+    T* to = field[axis] + place(sheet, source, 0);
+    const T* from = field[axis] + place(sheet, block, 0);
+    for_lanes(sheet, first + 1, std::min(last + 1, sheet.lanes), [&](std::ptrdiff_t at, auto mask) HWY_ATTR {
+      hn::Store(hn::IfThenElse(mask, hn::LoadU(tag, from + at - 1), load(to + at)), tag, to + at);
+    });
+    if (last == sheet.lanes)
+      for (int row = 0; row < sheet.rows; ++row) to[row * k_lanes] = from[row * k_lanes + last - 1];
+  }
+}
+
+/// Behind the ends of short lanes: the last block's places become copies of what comes next, (block 0, next lane).
+template <class T> void fetch_short(const WovenSheetView<T>& sheet, T* const* field) {
+  fetch_turned(sheet, field, 0, sheet.blocks - 1, sheet.long_lanes, sheet.lanes);
+}
+template <class T> void return_short(const WovenSheetView<T>& sheet, T* const* field) {
+  return_turned(sheet, field, 0, sheet.blocks - 1, sheet.long_lanes, sheet.lanes);
+}
+
+/// Puts all of short lanes' places in a block to one point: no edge there is long, none pulls, nothing is bent. That is
+/// how they pass through what only the long ones have.
+template <class T> void clear_short(const WovenSheetView<T>& sheet, int block) {
+  const Tag<T> tag;
+  for (T* x : sheet.x) {
+    T* to = x + place(sheet, block, 0);
+    for_lanes(sheet, sheet.long_lanes, sheet.lanes, [&](std::ptrdiff_t at, auto mask) HWY_ATTR {
+      hn::Store(hn::IfThenZeroElse(mask, load(to + at)), tag, to + at);
+    });
+  }
+}
+
+/// Their places in the last block, which hold no cloth, go where lane 0 is, and rest there.
+template <class T> void rest_short(const WovenSheetView<T>& sheet) {
+  const Tag<T> tag;
+  for (int axis = 0; axis < 3; ++axis) {
+    T* const x = sheet.x[axis] + place(sheet, sheet.blocks - 1, 0);
+    T* const was = sheet.was[axis] + place(sheet, sheet.blocks - 1, 0);
+    for_lanes(sheet, sheet.long_lanes, sheet.lanes, [&](std::ptrdiff_t at, auto mask) HWY_ATTR {
+      const Wide<T> there = set(x[at / k_lanes * k_lanes]);
+      hn::Store(hn::IfThenElse(mask, there, load(x + at)), tag, x + at);
+      hn::Store(hn::IfThenElse(mask, there, load(was + at)), tag, was + at);
+    });
+  }
+}
+
+/// Halo `number` takes the lanes of block `number` turned by one; lanes without a column in the last block what that
+/// holds, next to which nothing is too long.
 template <class T> void fetch_halo(const WovenSheetView<T>& sheet, T* const* field, int number) {
   const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
   for (int axis = 0; axis < 3; ++axis) {
@@ -92,28 +183,31 @@ template <class T> void fetch_halo(const WovenSheetView<T>& sheet, T* const* fie
     const T* last = field[axis] + place(sheet, sheet.blocks - 1, 0);
     T* to = field[axis] + place(sheet, sheet.blocks + number, 0);
     const int count = sheet.rows * k_lanes;
-    for (int k = 0; k < count; k += width) hn::Store(hn::LoadU(Tag<T>(), from + k + 1), Tag<T>(), to + k);
-    for (int row = 0; row < count; row += k_lanes) {
-      to[row + sheet.lanes - 1] = from[row];
-      for (int lane = sheet.lanes; lane < k_lanes; ++lane) to[row + lane] = last[row + lane];
+    if (sheet.long_lanes == k_lanes) {
+      for (int k = 0; k < count; k += width) hn::Store(hn::LoadU(Tag<T>(), from + k + 1), Tag<T>(), to + k);
+      for (int row = 0; row < count; row += k_lanes) to[row + k_lanes - 1] = from[row];
+      continue;
     }
+    for_lanes(sheet, 0, k_lanes,
+              [&](std::ptrdiff_t at, auto) HWY_ATTR { hn::Store(load(last + at), Tag<T>(), to + at); });
   }
+  if (sheet.long_lanes < k_lanes) fetch_turned(sheet, field, number, sheet.blocks + number, 0, sheet.long_lanes);
 }
 
-/// And back; lanes without a column stay.
+/// And back; lanes without a column there stay.
 template <class T> void return_halo(const WovenSheetView<T>& sheet, T* const* field, int number) {
+  if (sheet.long_lanes < k_lanes) {
+    return_turned(sheet, field, number, sheet.blocks + number, 0, sheet.long_lanes);
+    return;
+  }
   const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
   for (int axis = 0; axis < 3; ++axis) {
     T* to = field[axis] + place(sheet, number, 0);
     const T* from = field[axis] + place(sheet, sheet.blocks + number, 0);
     const int count = sheet.rows * k_lanes;
-    if (sheet.lanes == k_lanes) {
-      // The last lane spills into the next row's first, or into the room behind the block; first lanes are set below.
-      for (int k = 0; k < count; k += width) hn::StoreU(load(from + k), Tag<T>(), to + k + 1);
-    } else {
-      for (int row = 0; row < count; row += k_lanes) std::copy_n(from + row, sheet.lanes - 1, to + row + 1);
-    }
-    for (int row = 0; row < count; row += k_lanes) to[row] = from[row + sheet.lanes - 1];
+    // The last lane spills into the next row's first, or into the room behind the block; first lanes are set below.
+    for (int k = 0; k < count; k += width) hn::StoreU(load(from + k), Tag<T>(), to + k + 1);
+    for (int row = 0; row < count; row += k_lanes) to[row] = from[row + k_lanes - 1];
   }
 }
 

@@ -32,7 +32,7 @@ std::uint64_t hash_of(const Garment& garment, const SolverOptions& options, prox
 int main() {
   std::vector<test::WovenCase> cases = test::woven_cases();
   for (const std::size_t k :
-       {3, 5, 8, 27}) { // rings of 15 and 10 lanes, a slit tube, a pinned grid: few, since -O0 is slow
+       {3, 5, 6, 8, 27}) { // rings of 15, 10 and 8 uneven lanes, a slit tube, a pinned grid: few, since -O0 is slow
     test::WovenCase& one = cases[k];
     if (one.garment.pins.empty()) test::pin_first_row(one.garment);
     for (const ContactFeatures features :

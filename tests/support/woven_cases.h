@@ -57,7 +57,7 @@ inline void hold_upright(cloth::Garment& garment) {
 
 } // namespace detail
 
-/// Every shape of the layout: lanes 16, 15, 10 and 1, blocks from 2 up, columns that fill the lanes and do not.
+/// Every shape of the layout: lanes from 1 to 16, blocks from 2 up, columns that fill the lanes and do not.
 inline std::vector<WovenCase> woven_cases() {
   std::mt19937_64 random(11);
   cloth::Fabric plain, limp, stiff;
@@ -97,6 +97,29 @@ inline std::vector<WovenCase> woven_cases() {
   cases.back().garment.pins = {{0, 0}, {19, 0}};
   cases.push_back({"ring, by three particles", detail::tube(15, 48, plain, 0.9, no_seam)});
   cases.back().garment.pins = {{0, 0}, {17, 0}, {31, 0}};
+  return cases;
+}
+
+/// Rings whose columns most numbers of lanes do not divide, of each kind of fabric: free, pinned by chance, and held by
+/// three particles, which tethers them.
+inline std::vector<WovenCase> uneven_rings() {
+  std::mt19937_64 random(12);
+  const cloth::Fabric plain;
+  cloth::Fabric sleek = plain, loose = plain, limp = plain;
+  sleek.bend = loose.shear = limp.bend = limp.shear = 0.0;
+  std::vector<WovenCase> cases;
+  for (const int columns : {7, 15, 17, 31, 33, 47, 61, 127}) {
+    int rows = 5;
+    for (const auto& [fabric, kind] : {std::pair(plain, ""), std::pair(sleek, ", without bend"),
+                                       std::pair(loose, ", without shear"), std::pair(limp, ", without either")}) {
+      const std::string name = "ring of " + std::to_string(columns) + kind;
+      cases.push_back({name, detail::tube(rows++, columns, fabric, 0.8, std::nullopt)});
+      cases.push_back({name + ", pinned", cases.back().garment});
+      detail::pin(cases.back().garment, random, columns / 3);
+      cases.push_back({name + ", tethered", cases[cases.size() - 2].garment});
+      cases.back().garment.pins = {{0, 0}, {columns / 3, 0}, {columns - 2, 0}};
+    }
+  }
   return cases;
 }
 

@@ -1,5 +1,5 @@
 // Cloth of threads once more, particle by particle in double: what cloth/woven/kernel.h promises, written from its
-// formulas. Of the kernel's layout it knows the order only: block after block, in each the columns `blocks` apart.
+// formulas. Of the kernel's layout it knows the order only: block after block, in each one column of every lane's run.
 #pragma once
 
 #include "cloth/garment/elements.h"
@@ -42,10 +42,14 @@ struct TwinPlane {
 
 class WovenTwin {
 public:
-  WovenTwin(const cloth::Garment& garment, int blocks)
+  WovenTwin(const cloth::Garment& garment, int blocks, int lanes)
       : x(garment.rest_positions), was(x), v(x.size(), Vec3::Zero()), garment_(&garment), blocks_(blocks),
-        rows_(garment.rows), columns_(garment.columns), inverse_mass_(x.size()), warp_(x.size()), weft_(x.size()),
-        falling_(x.size()), rising_(x.size()) {
+        rows_(garment.rows), columns_(garment.columns), columns_of_(blocks), inverse_mass_(x.size()), warp_(x.size()),
+        weft_(x.size()), falling_(x.size()), rising_(x.size()) {
+    for (int lane = 0, column = 0; lane < lanes; ++lane) { // of a grid the last runs may be short or empty
+      const int run = garment.woven_shut ? columns_ / lanes + (lane < columns_ % lanes) : blocks;
+      for (int block = 0; block < run && column < columns_; ++block) columns_of_[block].push_back(column++);
+    }
     const auto pinned = cloth::pinned_flags(garment);
     for (std::size_t i = 0; i < x.size(); ++i) inverse_mass_[i] = pinned[i] ? 0.0 : 1.0 / garment.masses[i];
     for (const cloth::Spring& spring : garment.springs)
@@ -179,6 +183,7 @@ public:
   }
 
   double inverse_mass(int i) const { return inverse_mass_[i]; }
+  const std::vector<int>& columns_of(int block) const { return columns_of_[block]; }
 
 private:
   struct Edge {
@@ -208,7 +213,7 @@ private:
 
   template <class F> void for_block(int block, int first, int last, const F& f) const {
     for (int row = first; row < last; ++row)
-      for (int column = block; column < columns_; column += blocks_) f(row * columns_ + column);
+      for (const int column : columns_of_[block]) f(row * columns_ + column);
   }
 
   void check(const Edge& edge, double length) {
@@ -331,6 +336,7 @@ private:
 
   const cloth::Garment* garment_;
   int blocks_, rows_, columns_;
+  std::vector<std::vector<int>> columns_of_; ///< each block
   std::vector<double> inverse_mass_;
   std::vector<Edge> warp_, weft_, falling_, rising_; ///< at their upper left particle
   std::vector<cloth::Tether> tethers_;               ///< none where most threads are held

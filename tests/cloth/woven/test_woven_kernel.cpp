@@ -47,7 +47,8 @@ template <class T> struct Both {
   double edge; ///< m, the shortest
 
   Both(const Garment& cloth, std::uint64_t seed, bool with_multipliers = false)
-      : sheet(cloth, with_multipliers), twin(cloth, sheet.view().blocks), garment(cloth), view(sheet.view()),
+      : sheet(cloth, with_multipliers), twin(cloth, sheet.view().blocks, sheet.view().lanes), garment(cloth),
+        view(sheet.view()),
         edge(std::min_element(cloth.springs.begin(), cloth.springs.end(), [](const Spring& a, const Spring& b) {
                return a.rest_length < b.rest_length;
              })->rest_length) {
@@ -128,7 +129,11 @@ protected:
       }
     }
   }
-  const std::vector<test::WovenCase> cases_ = test::woven_cases();
+  const std::vector<test::WovenCase> cases_ = [] {
+    std::vector<test::WovenCase> all = test::woven_cases();
+    for (test::WovenCase& ring : test::uneven_rings()) all.push_back(std::move(ring));
+    return all;
+  }();
 };
 
 using Scalars = ::testing::Types<double, float>;
@@ -139,7 +144,39 @@ TYPED_TEST(WovenKernels, LayoutsAreThoseMeant) {
   std::vector<int> lanes;
   for (const auto& one : this->cases_) lanes.push_back(WovenSheet<T>(one.garment, false).view().lanes);
   lanes.resize(16); // after them come the same ones, pinned
-  EXPECT_EQ(lanes, (std::vector{16, 16, 16, 15, 15, 10, 1, 1, 13, 16, 10, 6, 16, 1, 1, 1}));
+  EXPECT_EQ(lanes, (std::vector{16, 16, 16, 15, 15, 10, 8, 1, 13, 16, 10, 6, 16, 1, 1, 1}));
+}
+
+/// No number of columns costs a ring more blocks than it must.
+TYPED_TEST(WovenKernels, RingsOfAnySizeFillTheirLanes) {
+  using T = TypeParam;
+  for (const bool with_bend : {false, true})
+    for (int columns = 6; columns <= 140; ++columns) {
+      SCOPED_TRACE(std::to_string(columns) + (with_bend ? " columns" : " columns without bend"));
+      Fabric fabric;
+      if (!with_bend) fabric.bend = 0.0;
+      const Garment garment = test::detail::tube(3, columns, fabric, 0.8, std::nullopt);
+      const WovenSheet<T> sheet(garment, false);
+      const WovenSheetView<T>& view = sheet.view();
+      const int fewest = with_bend ? 3 : 2, most_lanes = std::min(k_lanes, columns / fewest);
+      EXPECT_EQ(view.blocks, (columns + most_lanes - 1) / most_lanes);
+      int next = 0; // runs follow each other
+      for (int lane = 0; lane < k_lanes; ++lane) {
+        const int before = next;
+        for (int block = 0; block < view.blocks; ++block) {
+          const int column = sheet.column_of(block, lane);
+          if (column < 0) continue;
+          EXPECT_EQ(column, next++);
+          EXPECT_EQ(sheet.element_of(2 * columns + column), block * view.block_stride + 2 * k_lanes + lane);
+        }
+        const int run = view.blocks - (lane >= view.long_lanes ? 1 : 0);
+        EXPECT_EQ(next - before, lane < view.lanes ? run : 0);
+        if (lane < view.lanes) {
+          EXPECT_GE(run, fewest);
+        }
+      }
+      EXPECT_EQ(next, columns);
+    }
 }
 
 TYPED_TEST(WovenKernels, PredictAndFinish) {
@@ -186,7 +223,7 @@ TYPED_TEST(WovenKernels, Bounds) {
       both.kernel.bounds(both.view, block, first, last, low, high);
       proxies::Box box;
       for (int row = first; row < last; ++row)
-        for (int column = block; column < garment.columns; column += both.view.blocks)
+        for (const int column : both.twin.columns_of(block))
           box.extend(both.at(both.view.x, row * garment.columns + column));
       if (box.isEmpty()) return; // a block without a column
       for (int axis = 0; axis < 3; ++axis) {
@@ -221,6 +258,24 @@ TYPED_TEST(WovenKernels, OverlongEdgesAreFoundWhereverTheyAre) {
       EXPECT_FALSE(both.kernel.constraints(both.view, step_of<T>())) << i;
       both.sheet.move_to(i, Vec3(0, 0, std::nan("")));
       EXPECT_FALSE(both.kernel.constraints(both.view, step_of<T>())) << i;
+    }
+  });
+}
+
+TYPED_TEST(WovenKernels, TheFirstBrokenEdgeIsLeftAsItWasMet) {
+  using T = TypeParam;
+  this->everywhere([&](const Garment& garment) {
+    for (int i = 0; i < garment.particle_count(); i += 1 + garment.particle_count() / 15) {
+      Both<T> both(garment, 16);
+      both.sheet.move_to(i, both.sheet.position(i) + Vec3(0, 0, 100.0));
+      std::vector<T> room(static_cast<std::size_t>(6 * both.view.block_stride));
+      EXPECT_FALSE(both.kernel.constraints_to_break(both.view, step_of<T>(), room.data())) << i;
+      double most = 0.0;
+      for (const Spring& spring : garment.springs)
+        if (spring.kind != SpringKind::bend)
+          most = std::max(most,
+                          (both.sheet.position(spring.i) - both.sheet.position(spring.j)).norm() / spring.rest_length);
+      EXPECT_GT(most, 0.999 * (1.0 + k_diverged_stretch)) << i;
     }
   });
 }
@@ -356,10 +411,10 @@ TYPED_TEST(WovenKernels, EdgesAndFaces) {
       const CellFeatures<T> features = {T(10), true, high}; // no cell is so large as to be passed over
       both.for_tiles([&](int block, int first, int last) {
         both.twin.contact_cells(block, first, last, collider, high, &expected_hits);
-        const bool at_the_end = block + 1 == both.view.blocks;
-        if (at_the_end) both.kernel.fetch_halo(both.view);
+        const bool is_copied = needs_halo(both.view, block);
+        if (is_copied) both.kernel.fetch_halo(both.view);
         both.kernel.contact_cells(both.view, block, first, last, c, features, &hits);
-        if (at_the_end) both.kernel.return_halo(both.view);
+        if (is_copied) both.kernel.return_halo(both.view);
       });
       worst.add(both.worst_x());
       EXPECT_LT(both.worst_x(), Bound<T>::cells);

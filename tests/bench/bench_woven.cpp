@@ -1,0 +1,56 @@
+// What a tube of N x N particles costs, a particle and substep, whatever N: hanging, its upper edge swung, and with a
+// capsule that swings in it. All of N = 17 .. 130, in nanoseconds (`ns`):
+//   taskset -c 0 bench_woven --benchmark_min_time=0.05 --benchmark_repetitions=5
+//   --benchmark_report_aggregates_only=true
+#include "cloth/solver.h"
+#include "tests/support/woven_cases.h"
+
+#include <benchmark/benchmark.h>
+
+namespace {
+
+using namespace tutu;
+using namespace tutu::cloth;
+
+void tube(benchmark::State& state, bool is_worn) {
+  const int n = static_cast<int>(state.range(0));
+  Garment garment = test::detail::tube(n, n, {}, 0.8, std::nullopt);
+  test::pin_first_row(garment);
+  const auto solver = make_solver(garment, {});
+  const auto query = proxies::make_query(proxies::Backend::hybrid);
+  std::vector<Vec3> pins_start(garment.pins.size()), pins_end(garment.pins.size());
+  std::vector<proxies::Capsule> start(1), end(1);
+  const std::vector<double> friction = {0.3};
+  FrameInput input;
+  input.substeps = 10;
+  int frame = 0;
+  const auto advance = [&] {
+    const auto place = [&](int f, std::vector<Vec3>& pins, proxies::Capsule& body) { // to and fro, once a second
+      const double swing = std::sin(f * 2.0 * std::numbers::pi / 60.0);
+      for (std::size_t k = 0; k < pins.size(); ++k)
+        pins[k] = garment.rest_positions[garment.pins[k].particle] + Vec3(0.03 * swing, 0, 0);
+      body = {{0.05 * swing, 1.0, 0}, {0.1 * swing, 0.7, 0}, 0.2};
+    };
+    place(frame, pins_start, start[0]);
+    place(++frame, pins_end, end[0]);
+    input.pins_start = pins_start;
+    input.pins_end = pins_end;
+    if (is_worn) {
+      input.colliders.start = start;
+      input.colliders.end = end;
+      input.friction = friction;
+    }
+    if (solver->step(input, *query)) state.SkipWithError("diverged");
+  };
+  for (int f = 0; f < 60; ++f) advance();
+  for (auto _ : state) advance();
+  const double particles = static_cast<double>(n) * n;
+  state.counters["ns"] = benchmark::Counter(particles * input.substeps * static_cast<double>(state.iterations()) * 1e-9,
+                                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void sizes(benchmark::internal::Benchmark* b) { b->DenseRange(17, 130)->Unit(benchmark::kMicrosecond); }
+BENCHMARK_CAPTURE(tube, hanging, false)->Apply(sizes);
+BENCHMARK_CAPTURE(tube, worn, true)->Apply(sizes);
+
+} // namespace
