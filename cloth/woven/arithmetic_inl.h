@@ -17,6 +17,7 @@ template <class T> struct WideArithmetic {
   using Vector = Wide3<T>;
   static constexpr double k_share = sizeof(T) == sizeof(float) ? 1e-6 : 1e-12; ///< above the rounding of a square
   static constexpr double k_least_square = 1e-30, k_steep = k_share, k_parallel = k_share;
+  static constexpr bool k_one_lane = false;
 
   static HWY_INLINE Real set(double x) { return HWY_NAMESPACE::set(static_cast<T>(x)); }
   static HWY_INLINE Real min(Real x, Real y) { return hn::Min(x, y); }

@@ -52,7 +52,7 @@ HWY_INLINE Wide3<T> surface_move(const WideCollider<T>& c, Wide<T> t, Wide<T> ra
   return plus(plus_times<T>(c.move_a, t, c.move_axis), cross(c.spin, arm));
 }
 
-/// Direction of q, of squared length `squared`; where it has none, the collider's own.
+/// Direction of q, of length `length`; where it has none, the collider's own.
 template <class T> HWY_INLINE Wide3<T> normal_of(const Wide3<T>& q, Wide<T> length, const Wide3<T>& on_axis) {
   const auto has_none = length < set(k_no_direction<T>);
   const Wide3<T> n = times(set(T(1)) / length, q);
@@ -147,8 +147,8 @@ public:
     const Tag<T> tag;
     const Wide3<T> along = minus(b.x, a.x), r = minus(a.x, c_.a);
     const Wide<T> ee = hn::Max(dot(along, along), set(T(1e-20)));
-    const auto [s, t] =
-        k_tapered ? Forms<T>::nearest_of_cone(c_, along, r, ee) : Forms<T>::nearest_of_segments(c_, along, r, ee);
+    const auto [s, t] = k_tapered ? Forms<T>::template nearest_of_cone<true>(c_, along, r, ee)
+                                  : Forms<T>::nearest_of_segments(c_, along, r, ee);
     const Wide3<T> q = minus(plus_times<T>(r, s, along), times(t, c_.axis));
     const auto is_hit = hn::And(hn::And(exists, (a.w + b.w) > hn::Zero(tag)), dot(q, q) < squared_radius(t));
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;

@@ -34,8 +34,8 @@ public:
   double distance(const Vec3& point, std::size_t capsule) const {
     const PlainCone& cone = parts_[capsule];
     const Vec3 from_a = point - cone.a;
-    const double t = nearest_on_axis(cone, from_a);
-    return (from_a - t * cone.axis).norm() - radius_at(cone, t);
+    if (cone.taper == 0.0) return PlainForms::distance<false>(cone, from_a);
+    return PlainForms::distance<true>(cone, from_a);
   }
 
   Nearest nearest(const Vec3& point) const {

@@ -14,6 +14,7 @@ struct PlainArithmetic {
   /// m2 or m4: what is not above it counts as 0, and one over its root is finite.
   static constexpr double k_least_square = 1e-100;
   static constexpr double k_steep = 0.0, k_parallel = 1e-12; ///< shares; ClosedForms
+  static constexpr bool k_one_lane = true;
 
   static double set(double x) { return x; }
   static double min(double x, double y) { return std::min(x, y); }
@@ -35,8 +36,7 @@ using PlainCone = RoundCone<PlainArithmetic>;
 
 /// Whether one end ball of a capsule is all there is: a sphere, or one end holds the other.
 inline bool is_one_ball(const Capsule& capsule) {
-  return !((capsule.b - capsule.a).squaredNorm() >
-           std::max(PlainArithmetic::k_least_square, capsule.taper * capsule.taper));
+  return !((capsule.b - capsule.a).squaredNorm() - capsule.taper * capsule.taper > PlainArithmetic::k_least_square);
 }
 
 /// The end ball that is all there is of it.
@@ -45,21 +45,31 @@ inline Capsule wide_end(const Capsule& capsule) {
   return {centre, centre, capsule.widest(), 0.0};
 }
 
-inline PlainCone round_cone(const Capsule& capsule) {
-  if (is_one_ball(capsule)) {
-    const Capsule ball = wide_end(capsule);
-    return {ball.a, Vec3::Zero(), 0.0, ball.radius, 0.0, 0.0};
-  }
+/// Of a capsule that is not one ball.
+inline PlainCone two_ball_cone(const Capsule& capsule) {
   const Vec3 axis = capsule.b - capsule.a;
   const double squared = axis.squaredNorm(), taper = capsule.taper;
   const double lean = taper == 0.0 ? 0.0 : taper / std::sqrt(squared * (squared - taper * taper));
   return {capsule.a, axis, 1.0 / squared, capsule.radius, taper, lean};
 }
 
+inline PlainCone round_cone(const Capsule& capsule) {
+  if (!is_one_ball(capsule)) return two_ball_cone(capsule);
+  const Capsule ball = wide_end(capsule);
+  return {ball.a, Vec3::Zero(), 0.0, ball.radius, 0.0, 0.0};
+}
+
 /// The place of the ball that is nearest to a point `from_a` from the cone's a.
 inline double nearest_on_axis(const PlainCone& cone, const Vec3& from_a) {
   return cone.taper == 0.0 ? PlainForms::nearest_on_axis<false>(cone, from_a)
                            : PlainForms::nearest_on_axis<true>(cone, from_a);
+}
+
+/// The centre, as share of the axis, of the ball whose surface is nearest to the point (that it is deepest in). 0 for a
+/// sphere.
+inline double nearest_on_axis(const Vec3& point, const Capsule& capsule) {
+  if (is_one_ball(capsule)) return capsule.taper > 0.0 ? 1.0 : 0.0;
+  return nearest_on_axis(two_ball_cone(capsule), point - capsule.a);
 }
 
 inline double radius_at(const PlainCone& cone, double t) { return PlainForms::radius_at<true>(cone, t); }

@@ -11,7 +11,7 @@
 // them):
 //   set(double), min, max, abs, sqrt, select(mask, x, y) and the operators + - * / < > == of Real;
 //   dot, cross, length, plus_times(v, s, w) = v + s w, minus_times of Vector;
-//   k_least_square, k_steep, k_parallel: see where they are used.
+//   k_least_square, k_steep, k_parallel, k_one_lane (Real is one number): see where they are used.
 // Each lane is computed by the operations as they stand here, in their order: bits are a promise.
 
 /// The balls about all points a + t axis, t in [0, 1], of radius `radius` + t `taper`: a Capsule (proxies/shapes.h)
@@ -46,6 +46,12 @@ template <class A> struct ClosedForms {
     else return within_unit(foot + A::length(A::minus_times(d, foot, c.axis)) * c.lean);
   }
 
+  /// How far that point is from the surface, m: below 0 inside.
+  template <bool k_tapered> [[gnu::always_inline]] static inline Real distance(const Cone& c, const Vector& d) {
+    const Real t = nearest_on_axis<k_tapered>(c, d);
+    return A::length(A::minus_times(d, t, c.axis)) - radius_at<k_tapered>(c, t);
+  }
+
   /// A point against the half space normal . x <= offset: above 0 outside.
   [[gnu::always_inline]] static inline Real height(const Vector& normal, Real offset, const Vector& x) {
     return A::dot(x, normal) - offset;
@@ -74,17 +80,24 @@ template <class A> struct ClosedForms {
   /// where the edge is steeper than the cone, at the wide end, and within [0, 1] at the bound next to it; where the s
   /// that belongs to that t is out of bounds, at the bound of s. Less than k_steep, of |edge|^2 |axis|^2, counts as
   /// steeper.
+  template <bool k_tapered>
   [[gnu::always_inline]] static inline Places nearest_of_cone(const Cone& c, const Vector& edge, const Vector& r,
                                                               Real ee) {
     const Vector across = A::cross(edge, c.axis);
-    const Real squared = A::dot(across, across), taper_ee = c.taper * ee, upright = squared - taper_ee * c.taper;
+    const Real squared = A::dot(across, across);
     const Real least = A::max(A::set(A::k_steep) * ee * A::dot(c.axis, c.axis), A::set(A::k_least_square));
-    const Real leaning = A::abs(A::dot(r, across)) * taper_ee / A::sqrt(A::max(upright, least));
-    const Real facing = (A::dot(A::cross(edge, r), across) + leaning) / A::max(squared, least);
-    const Real wide_end = A::select(c.taper > A::set(0.0), A::set(1.0), A::set(0.0));
-    const Real t = within_unit(A::select(upright > least, facing, wide_end));
+    Real upright = squared, facing = A::dot(A::cross(edge, r), across), wide_end = A::set(0.0);
+    if constexpr (k_tapered) {
+      const Real taper_ee = c.taper * ee;
+      upright = squared - taper_ee * c.taper;
+      facing = facing + A::abs(A::dot(r, across)) * taper_ee / A::sqrt(A::max(upright, least));
+      wide_end = A::select(c.taper > A::set(0.0), A::set(1.0), A::set(0.0));
+    }
+    const Real t = within_unit(A::select(upright > least, facing / A::max(squared, least), wide_end));
     const Real free = (t * A::dot(edge, c.axis) - A::dot(edge, r)) / ee, s = within_unit(free);
-    return {s, A::select(s == free, t, nearest_on_axis<true>(c, A::plus_times(r, s, edge)))};
+    if constexpr (A::k_one_lane)
+      if (s == free) return {s, t};
+    return {s, A::select(s == free, t, nearest_on_axis<k_tapered>(c, A::plus_times(r, s, edge)))};
   }
 
   /// The foot of a point on the plane of a triangle, o + v e + w f, `r` being the point less o [Ericson 2005, 3.4];

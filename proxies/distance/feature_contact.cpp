@@ -45,8 +45,9 @@ std::optional<Vec3> cone_normal(const Vec3& u, const Vec3& v, double taper, bool
 Nearest edge_of(int index, int corners, const Vec3& p, const Vec3& q, const PlainCone& cone) {
   const Vec3 u = q - p, r = p - cone.a;
   const double uu = u.squaredNorm();
-  const auto [s, t] =
-      uu > k_point ? PlainForms::nearest_of_cone(cone, u, r, uu) : PlainForms::Places{0.0, nearest_on_axis(cone, r)};
+  const auto [s, t] = !(uu > k_point)     ? PlainForms::Places{0.0, nearest_on_axis(cone, r)}
+                      : cone.taper == 0.0 ? PlainForms::nearest_of_cone<false>(cone, u, r, uu)
+                                          : PlainForms::nearest_of_cone<true>(cone, u, r, uu);
   const int next = (index + 1) % corners;
   Nearest nearest{(r + s * u - t * cone.axis).norm() - radius_at(cone, t), t, {}, ClothFeature::edge, index};
   nearest.weights[index] = 1.0 - s;

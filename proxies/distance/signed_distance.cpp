@@ -1,7 +1,5 @@
 #include "proxies/distance/signed_distance.h"
 
-#include "proxies/distance/closed_forms.h"
-
 #include <cmath>
 
 namespace tutu::proxies {
@@ -26,15 +24,9 @@ Vec3 normal_on_axis(const Capsule& capsule) {
   return std::sqrt(1.0 - lean * lean) * across - lean * u;
 }
 
-double nearest_on_axis(const Vec3& point, const Capsule& capsule) {
-  if (is_one_ball(capsule)) return capsule.taper > 0.0 ? 1.0 : 0.0;
-  return nearest_on_axis(round_cone(capsule), point - capsule.a);
-}
-
 Contact signed_distance(const Vec3& point, const Capsule& capsule) {
-  const PlainCone cone = round_cone(capsule);
-  const double t = nearest_on_axis(cone, point - cone.a), radius = radius_at(cone, t);
-  const Vec3 nearest = cone.a + t * cone.axis;
+  const double t = nearest_on_axis(point, capsule), radius = capsule.radius_at(t);
+  const Vec3 nearest = capsule.a + t * (capsule.b - capsule.a);
   const Vec3 away = point - nearest;
   const double length = away.norm();
   const double distance = length - radius;

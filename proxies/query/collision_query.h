@@ -66,9 +66,9 @@ public:
 };
 
 enum class Backend {
-  fcl,    ///< FCL's tree, per particle; FCL's distance asked in the one sound way
-  hybrid, ///< FCL's tree or a plain list, whichever is quicker, of whatever is asked in runs; the closed forms
-  brute,  ///< every pair, the closed forms: the twin that tests compare with
+  fcl,    ///< candidates by FCL's tree, per particle; contacts by FCL's distance, asked in the one sound way
+  hybrid, ///< candidates by FCL's tree or a list, whichever is quicker; contacts, the closed forms, left to who asks
+  brute,  ///< every pair is a candidate; contacts by the closed forms: the twin that tests compare with
   mesh    ///< no proxies: the true, skinned body (BodyMesh), for reference runs
 };
 

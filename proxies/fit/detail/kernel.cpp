@@ -45,18 +45,22 @@ template <bool k_tapered> HWY_INLINE Wide distances(const Shapes& s, Wide x, Wid
   return distance;
 }
 
-/// One shape in all lanes.
-HWY_INLINE Shapes same(const ShapeArrays& a, std::size_t i) {
-  const auto all = [&](const float* of) HWY_ATTR { return hn::Set(Tag(), of[i]); };
-  return {{all(a.ax), all(a.ay), all(a.az)},
-          {all(a.dx), all(a.dy), all(a.dz)},
-          all(a.inverse_square),
-          all(a.radius),
-          all(a.taper),
-          all(a.lean)};
+HWY_INLINE Wide load(const float* from) { return hn::LoadU(Tag(), from); }
+
+/// What `lanes` makes of each array.
+template <class Lanes> HWY_INLINE Shapes shapes_of(const ShapeArrays& a, const Lanes& lanes) {
+  return {{lanes(a.ax), lanes(a.ay), lanes(a.az)},
+          {lanes(a.dx), lanes(a.dy), lanes(a.dz)},
+          lanes(a.inverse_square),
+          lanes(a.radius),
+          lanes(a.taper),
+          lanes(a.lean)};
 }
 
-HWY_INLINE Wide load(const float* from) { return hn::LoadU(Tag(), from); }
+/// One shape in all lanes.
+HWY_INLINE Shapes same(const ShapeArrays& a, std::size_t i) {
+  return shapes_of(a, [i](const float* of) HWY_ATTR { return hn::Set(Tag(), of[i]); });
+}
 
 void from_shapes(const ShapeArrays& a, std::size_t first, int count, float x, float y, float z, float* out) {
   const Tag tag;
@@ -64,12 +68,7 @@ void from_shapes(const ShapeArrays& a, std::size_t first, int count, float x, fl
   const Wide wide_x = hn::Set(tag, x), wide_y = hn::Set(tag, y), wide_z = hn::Set(tag, z);
   for (int k = 0; k < count; k += width) {
     const std::size_t i = first + k;
-    const Shapes shapes = {{load(a.ax + i), load(a.ay + i), load(a.az + i)},
-                           {load(a.dx + i), load(a.dy + i), load(a.dz + i)},
-                           load(a.inverse_square + i),
-                           load(a.radius + i),
-                           load(a.taper + i),
-                           load(a.lean + i)};
+    const Shapes shapes = shapes_of(a, [i](const float* of) HWY_ATTR { return load(of + i); });
     hn::StoreU(distances<true>(shapes, wide_x, wide_y, wide_z), tag, out + k);
   }
 }

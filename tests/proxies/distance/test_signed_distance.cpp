@@ -190,7 +190,7 @@ TEST(CapsuleUnion, IsTheLeastOfAll) {
     const test::ColliderScene scene = test::random_scene(random, 30, 0, 0.0);
     CapsuleUnion solid;
     solid.assign(scene.start);
-    const Vec3 point = random_point(random, 0.36);
+    const Vec3 point = random_point(random, 0.3);
     double least = std::numeric_limits<double>::infinity(), least_but_last = least;
     for (const Capsule& capsule : scene.start) {
       least_but_last = least;
