@@ -312,7 +312,7 @@ private:
 
   void edge_contact(int a, int b, const TwinCollider& collider, std::int64_t* contacts) {
     if (least_distance(0.5 * (x[a] + x[b]), 0.5 * (x[b] - x[a]).norm(), collider.now) > k_grazing) return;
-    const Searched contact = search_edge(x[a], x[b], collider.now);
+    const Searched contact = search_edge(x[a], x[b], collider.now, 46); // places to 1e-14
     grazing += std::abs(contact.distance) < k_grazing;
     if (contact.distance < 0.0) spread<2>({a, b}, {1.0 - contact.s, contact.s}, contact, collider, contacts);
   }
