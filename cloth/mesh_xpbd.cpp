@@ -146,13 +146,7 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto rub = [&](int i, int collider, const proxies::Contact& contact, double push) {
-    Vec3& x = particles_.positions[i];
-    x += push * contact.normal;
-    if (input.friction.empty()) return;
-    const Vec3 slip = x - before_[i] - contacts_.surface_motion(collider, x);
-    const Vec3 along = slip - slip.dot(contact.normal) * contact.normal;
-    const double length = along.norm(), most = input.friction[collider] * push;
-    x -= length > most ? Vec3((most / length) * along) : along;
+    contacts_.push_out(particles_.positions[i], before_[i], collider, contact, push, input.friction);
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};

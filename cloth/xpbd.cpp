@@ -83,9 +83,9 @@ private:
   int passes_ = 1;
   std::vector<std::uint8_t> pinned_;
   std::vector<T> seam_shares_;
-  WovenContacts<T> contacts_; ///< of the hybrid backend
-  ContactSearch search_;      ///< of the others
-  bool asks_each_ = false;
+  WovenContacts<T> contacts_;           ///< of whole vectors, where the backend leaves contacts to us
+  ContactSearch search_;                ///< else
+  bool asks_each_ = false;              ///< it is else
   std::optional<Divergence> unusable_;  ///< of the state that was restored last
   std::vector<Vec3> pins_;              ///< where they are to the last bit; none before the first frame
   std::unique_ptr<SelfCollision> self_; ///< where asked for, with
@@ -121,13 +121,7 @@ template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const 
   search_.for_each_contact(query, s, pinned_, particles_,
                            [&](int i, int collider, const proxies::Contact& contact, double push) {
                              Vec3& x = particles_.positions[i];
-                             x += push * contact.normal;
-                             if (!input.friction.empty()) {
-                               const Vec3 slip = x - sheet_.start_position(i) - search_.surface_motion(collider, x);
-                               const Vec3 along = slip - slip.dot(contact.normal) * contact.normal;
-                               const double length = along.norm(), most = input.friction[collider] * push;
-                               x -= length > most ? Vec3((most / length) * along) : along;
-                             }
+                             search_.push_out(x, sheet_.start_position(i), collider, contact, push, input.friction);
                              sheet_.move_to(i, x);
                            });
 }
@@ -182,7 +176,7 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
   times_ = {};
   if (unusable_) return *unusable_;
   auto time = Clock::now();
-  asks_each_ = query.name() != proxies::k_backend_names[static_cast<std::size_t>(proxies::Backend::hybrid)];
+  asks_each_ = !query.leaves_contacts();
   sheet_.follow();
   if (asks_each_) search_.begin_frame(query, input.colliders, particles(), input.seconds);
   else contacts_.begin_frame(query, input, sheet_);

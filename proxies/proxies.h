@@ -26,6 +26,7 @@
 #include "proxies/collider.h"                 // IWYU pragma: export
 #include "proxies/contact.h"                  // IWYU pragma: export
 #include "proxies/distance/capsule_union.h"   // IWYU pragma: export
+#include "proxies/distance/closed_forms.h"    // IWYU pragma: export
 #include "proxies/distance/feature_contact.h" // IWYU pragma: export
 #include "proxies/distance/signed_distance.h" // IWYU pragma: export
 #include "proxies/distance/surface_cells.h"   // IWYU pragma: export

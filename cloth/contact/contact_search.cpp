@@ -1,5 +1,7 @@
 #include "cloth/contact/contact_search.h"
 
+#include "cloth/contact/coulomb.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -72,6 +74,13 @@ void ContactSearch::account_travel(proxies::CollisionQuery& query, std::span<con
     margin_ = std::max(margin_, k_margin_growth * farthest);
     find_candidates(query, particles);
   }
+}
+
+void ContactSearch::push_out(Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact, double push,
+                             std::span<const double> friction) const {
+  x += push * contact.normal;
+  if (friction.empty()) return;
+  x = rubbed(x, x - start - surface_motion(collider, x), contact.normal, friction[collider] * push);
 }
 
 Vec3 ContactSearch::surface_motion(int collider, const Vec3& point) const {

@@ -40,6 +40,11 @@ public:
   void for_each_contact(proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
                         Particles& particles, const OnContact& on_contact);
 
+  /// Takes `x`, which began the substep at `start`, out of a collider by `push` along the contact's normal, and back by
+  /// what rubs. `friction`: of each collider; empty where none rubs.
+  void push_out(Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact, double push,
+                std::span<const double> friction) const;
+
   /// How far the collider's surface has moved since the last substep where it is nearest to `point`, m.
   Vec3 surface_motion(int collider, const Vec3& point) const;
 

@@ -1,5 +1,6 @@
 #include "cloth/contact/self_collision.h"
 
+#include "cloth/contact/coulomb.h"
 #include "cloth/state/tolerances.h"
 
 #include <algorithm>
@@ -222,11 +223,9 @@ void SelfCollision::push_apart(Pair& pair, std::span<const Vec3> start, std::spa
   a -= (share * push) * normal;
   b += ((1.0 - share) * push) * normal;
   const Vec3 slip = (b - start[pair.j]) - (a - start[pair.i]);
-  const Vec3 along = slip - slip.dot(normal) * normal;
-  const double length = along.norm(), most = k_cloth_friction * push;
-  const Vec3 back = length > most ? Vec3((most / length) * along) : along;
-  a += share * back;
-  b -= (1.0 - share) * back;
+  const Vec3 back = rubbed(Vec3::Zero(), slip, normal, k_cloth_friction * push);
+  a -= share * back;
+  b += (1.0 - share) * back;
   pair.touched = true;
   touch(pair.i);
   touch(pair.j);

@@ -7,7 +7,7 @@
 #endif
 
 #include "cloth/state/tolerances.h"
-#include "cloth/woven/vectors_inl.h"
+#include "cloth/woven/arithmetic_inl.h"
 
 #include <cmath>
 #include <limits>
@@ -25,42 +25,24 @@ template <class T> constexpr T k_no_direction = sizeof(T) == sizeof(float) ? T(1
 /// substep less that of the surface under it. `is_hit` lanes only; 0 in the others.
 template <class T, class Mask>
 HWY_INLINE Wide3<T> response(Mask is_hit, Wide<T> depth, const Wide3<T>& n, const Wide3<T>& way, const Wide3<T>& slip,
-                             T surface_moved, T push_speed_step, T friction) {
+                             const WovenSurface<T>& surface) {
   // A contact that was made in this substep is no deeper than both sides moved: deeper ones come from a start
   // inside, and are worked out at a bounded speed.
-  const Wide<T> most = hn::Sqrt(dot(way, way)) + set(surface_moved + push_speed_step);
+  const Wide<T> most = hn::Sqrt(dot(way, way)) + set(surface.moved + surface.push_speed_step);
   const Wide<T> push = hn::IfThenElseZero(is_hit, hn::Min(depth, most));
-  const Wide3<T> out = times(push, n);
-  const Wide<T> along = dot(slip, n);
-  const Wide3<T> tangential = minus_times<T>(slip, along, n);
-  const Wide<T> length = length_of<T>(tangential);
-  const Wide<T> share = hn::Min(set(T(1)), set(friction) * push / length);
-  return minus_times<T>(out, share, tangential);
+  return rubbed<WideArithmetic<T>>(times(push, n), slip, n, set(surface.friction) * push);
 }
+
+template <class T> using Forms = ClosedForms<WideArithmetic<T>>;
 
 /// A collider broadcast to all lanes.
-template <class T> struct WideCollider {
-  Wide3<T> a, axis, move_a, move_axis, spin, on_axis;
-  Wide<T> per_axis_squared, radius, taper, lean;
+template <class T> struct WideCollider : RoundCone<WideArithmetic<T>> {
+  Wide3<T> move_a, move_axis, spin, on_axis;
   explicit HWY_INLINE WideCollider(const WovenCollider<T>& c)
-      : a(set3(c.a)), axis(set3(c.axis)), move_a(set3(c.move_a)), move_axis(set3(c.move_axis)), spin(set3(c.spin)),
-        on_axis(set3(c.on_axis)), per_axis_squared(set(c.per_axis_squared)), radius(set(c.radius)), taper(set(c.taper)),
-        lean(set(c.lean)) {}
+      : RoundCone<WideArithmetic<T>>{set3(c.a),     set3(c.axis), set(c.per_axis_squared),
+                                     set(c.radius), set(c.taper), set(c.lean)},
+        move_a(set3(c.move_a)), move_axis(set3(c.move_axis)), spin(set3(c.spin)), on_axis(set3(c.on_axis)) {}
 };
-
-template <class T> HWY_INLINE Wide<T> clamped(Wide<T> t) { return hn::Min(hn::Max(t, set(T(0))), set(T(1))); }
-
-/// The place on the axis of the ball nearest to a point d from a (proxies::nearest_on_axis).
-template <bool k_tapered, class T> HWY_INLINE Wide<T> nearest_on_axis(const WideCollider<T>& c, const Wide3<T>& d) {
-  const Wide<T> foot = dot(d, c.axis) * c.per_axis_squared;
-  if constexpr (!k_tapered) return clamped<T>(foot);
-  return clamped<T>(foot + length_of<T>(minus_times<T>(d, foot, c.axis)) * c.lean);
-}
-
-template <bool k_tapered, class T> HWY_INLINE Wide<T> radius_at(const WideCollider<T>& c, Wide<T> t) {
-  if constexpr (k_tapered) return c.radius + t * c.taper;
-  return c.radius;
-}
 
 /// The surface of a collider at a point in direction n from the place t of its axis, where its radius is given: how far
 /// it has moved.
@@ -70,7 +52,7 @@ HWY_INLINE Wide3<T> surface_move(const WideCollider<T>& c, Wide<T> t, Wide<T> ra
   return plus(plus_times<T>(c.move_a, t, c.move_axis), cross(c.spin, arm));
 }
 
-/// Direction of q, of squared length `squared`; where it has none, the collider's own.
+/// Direction of q, of length `length`; where it has none, the collider's own.
 template <class T> HWY_INLINE Wide3<T> normal_of(const Wide3<T>& q, Wide<T> length, const Wide3<T>& on_axis) {
   const auto has_none = length < set(k_no_direction<T>);
   const Wide3<T> n = times(set(T(1)) / length, q);
@@ -79,30 +61,29 @@ template <class T> HWY_INLINE Wide3<T> normal_of(const Wide3<T>& q, Wide<T> leng
 }
 
 template <bool k_tapered, class T>
-T contact_capsule_as(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
-                     T rise, std::int64_t* contacts) {
+T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider, T rise,
+                     std::int64_t* contacts) {
   const Tag<T> tag;
   WideCollider<T> c(collider);
   c.radius = set(collider.radius + rise);
   const Wide<T> far = set(std::numeric_limits<T>::max()), squared_radius = c.radius * c.radius;
   Wide<T> least = far; // distance from the surface; of a plain capsule squared distance from the axis
-  for_rows(sheet, block, first, last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_rows(sheet, rows.block, rows.first, rows.last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const Wide3<T> x = load(sheet.x, at), d = minus(x, c.a);
-    const Wide<T> t = nearest_on_axis<k_tapered, T>(c, d), radius = radius_at<k_tapered, T>(c, t);
+    const Wide<T> t = Forms<T>::template nearest_on_axis<k_tapered>(c, d);
+    const Wide<T> radius = Forms<T>::template radius_at<k_tapered>(c, t);
     const Wide3<T> q = minus_times<T>(d, t, c.axis);
     const Wide<T> squared = dot(q, q), length = k_tapered ? length_of<T>(q) : squared;
     const Wide<T> beyond = k_tapered ? length - radius : squared;
     least = hn::Min(least, beyond);
-    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, rows.block, row) + lane) > hn::Zero(tag);
     const auto is_hit = hn::And(is_free, k_tapered ? beyond < hn::Zero(tag) : squared < squared_radius);
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide<T> from_axis = k_tapered ? length : length_of<T>(q);
     const Wide3<T> n = normal_of<T>(q, from_axis, c.on_axis);
     const Wide3<T> way = minus(x, load(sheet.was, at));
     const Wide3<T> slip = minus(way, surface_move<T>(c, t, radius, n));
-    store(plus(x, response<T>(is_hit, radius - from_axis, n, way, slip, collider.moved, collider.push_speed_step,
-                              collider.friction)),
-          sheet.x, at);
+    store(plus(x, response<T>(is_hit, radius - from_axis, n, way, slip, collider)), sheet.x, at);
     *contacts += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
   });
   const T nearest = hn::GetLane(hn::MinOfLanes(tag, least));
@@ -110,29 +91,28 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, int block, int first, int l
 }
 
 template <class T>
-T contact_capsule(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
-                  T rise, std::int64_t* contacts) {
+T contact_capsule(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider, T rise,
+                  std::int64_t* contacts) {
   const auto contact = collider.taper == T(0) ? contact_capsule_as<false, T> : contact_capsule_as<true, T>;
-  return contact(sheet, block, first, last, collider, rise, contacts);
+  return contact(sheet, rows, collider, rise, contacts);
 }
 
 template <class T>
-T contact_plane(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenPlane<T>& plane,
+T contact_plane(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenPlane<T>& plane,
                 std::int64_t* contacts) {
   const Tag<T> tag;
   const Wide3<T> n = set3(plane.normal);
   const Wide<T> offset = set(plane.offset), far = set(std::numeric_limits<T>::max());
   Wide<T> least = far;
-  for_rows(sheet, block, first, last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+  for_rows(sheet, rows.block, rows.first, rows.last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const Wide3<T> x = load(sheet.x, at);
-    const Wide<T> height = dot(x, n) - offset;
+    const Wide<T> height = Forms<T>::height(n, offset, x);
     least = hn::Min(least, height);
-    const auto is_free = load(row_of(sheet.own_inverse_mass, block, row) + lane) > hn::Zero(tag);
+    const auto is_free = load(row_of(sheet.own_inverse_mass, rows.block, row) + lane) > hn::Zero(tag);
     const auto is_hit = hn::And(is_free, height < hn::Zero(tag));
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide3<T> way = minus(x, load(sheet.was, at));
-    store(plus(x, response<T>(is_hit, hn::Neg(height), n, way, way, T(0), plane.push_speed_step, plane.friction)),
-          sheet.x, at);
+    store(plus(x, response<T>(is_hit, hn::Neg(height), n, way, way, plane)), sheet.x, at);
     *contacts += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
   });
   return hn::GetLane(hn::MinOfLanes(tag, least));
@@ -167,7 +147,8 @@ public:
     const Tag<T> tag;
     const Wide3<T> along = minus(b.x, a.x), r = minus(a.x, c_.a);
     const Wide<T> ee = hn::Max(dot(along, along), set(T(1e-20)));
-    const auto [s, t] = k_tapered ? nearest_of_cone(along, r, ee) : nearest_of_segments(along, r, ee);
+    const auto [s, t] = k_tapered ? Forms<T>::template nearest_of_cone<true>(c_, along, r, ee)
+                                  : Forms<T>::nearest_of_segments(c_, along, r, ee);
     const Wide3<T> q = minus(plus_times<T>(r, s, along), times(t, c_.axis));
     const auto is_hit = hn::And(hn::And(exists, (a.w + b.w) > hn::Zero(tag)), dot(q, q) < squared_radius(t));
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
@@ -181,14 +162,11 @@ public:
     touched_ += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
   }
 
-  /// The end t (0 or 1) of the axis against the inside of a triangle: its foot on the plane [Ericson 2005, 3.4]. Feet
-  /// outside belong to an edge.
+  /// The end t (0 or 1) of the axis against the inside of a triangle. Feet outside belong to an edge.
   HWY_INLINE void face(T t, Corner<T>& o, Corner<T>& p, Corner<T>& q, Mask exists) {
     const Tag<T> tag;
     const Wide3<T> e = minus(p.x, o.x), f = minus(q.x, o.x), r = minus(plus_times<T>(c_.a, set(t), c_.axis), o.x);
-    const Wide<T> ee = dot(e, e), ef = dot(e, f), ff = dot(f, f), re = dot(r, e), rf = dot(r, f);
-    const Wide<T> per = set(T(1)) / hn::Max(ee * ff - ef * ef, set(T(1e-20)));
-    const Wide<T> v = (ff * re - ef * rf) * per, w = (ee * rf - ef * re) * per, u = set(T(1)) - v - w;
+    const auto [u, v, w] = Forms<T>::foot_on_plane(e, f, r, set(T(1e-20)));
     const Wide3<T> away = minus(plus(times(v, e), times(w, f)), r);
     const auto inside = hn::Min(u, hn::Min(v, w)) >= hn::Zero(tag);
     const auto near = hn::And(dot(away, away) < squared_radius(set(t)), (o.w + p.w + q.w) > hn::Zero(tag));
@@ -207,38 +185,8 @@ public:
   }
 
 private:
-  struct Place {
-    Wide<T> s, t; ///< of the edge and of the axis
-  };
-
-  /// Segment against segment [Ericson 2005, Real-Time Collision Detection, 5.1.9], the axis being the second.
-  HWY_INLINE Place nearest_of_segments(const Wide3<T>& along, const Wide3<T>& r, Wide<T> ee) const {
-    const Wide<T> ea = dot(along, c_.axis), er = dot(along, r), ar = dot(c_.axis, r);
-    // The line's nearest point to the axis' line; the product with 1 / |axis|^2 keeps the numbers of one size.
-    const Wide<T> slant = ea * c_.per_axis_squared, determinant = ee - ea * slant;
-    constexpr T k_parallel = sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-12); // squared sine between them
-    const Wide<T> on_line = (slant * ar - er) / hn::Max(determinant, set(k_parallel) * ee);
-    const Wide<T> t = clamped<T>((ea * clamped<T>(on_line) + ar) * c_.per_axis_squared);
-    return {clamped<T>((t * ea - er) / ee), t};
-  }
-
-  /// proxies::edge_contact has the derivation. Less than k_steep counts as steeper than the cone.
-  HWY_INLINE Place nearest_of_cone(const Wide3<T>& along, const Wide3<T>& r, Wide<T> ee) const {
-    const Tag<T> tag;
-    constexpr T k_steep = sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-12); // of |along|^2 |axis|^2
-    const Wide3<T> across = cross(along, c_.axis);
-    const Wide<T> squared = dot(across, across), taper_ee = c_.taper * ee, upright = squared - taper_ee * c_.taper;
-    const Wide<T> least = hn::Max(set(k_steep) * ee * dot(c_.axis, c_.axis), set(T(1e-30)));
-    const Wide<T> leaning = hn::Abs(dot(r, across)) * taper_ee / hn::Sqrt(hn::Max(upright, least));
-    const Wide<T> facing = (dot(cross(along, r), across) + leaning) / hn::Max(squared, least);
-    const Wide<T> wide_end = hn::IfThenElseZero(c_.taper > hn::Zero(tag), set(T(1)));
-    const Wide<T> t = clamped<T>(hn::IfThenElse(upright > least, facing, wide_end));
-    const Wide<T> free = (t * dot(along, c_.axis) - dot(along, r)) / ee, s = clamped<T>(free);
-    return {s, hn::IfThenElse(s == free, t, nearest_on_axis<k_tapered, T>(c_, plus_times<T>(r, s, along)))};
-  }
-
   HWY_INLINE Wide<T> squared_radius(Wide<T> t) const {
-    const Wide<T> radius = radius_at<k_tapered, T>(c_, t);
+    const Wide<T> radius = Forms<T>::template radius_at<k_tapered>(c_, t);
     return radius * radius;
   }
 
@@ -247,11 +195,10 @@ private:
   /// these products: beside a pinned corner the lever is kept to k_longest_lever.
   HWY_INLINE Wide3<T> moved_point(Wide<T> t, const Wide3<T>& q, const Wide3<T>& way, Mask is_hit, Wide<T> weights,
                                   Wide<T> most) const {
-    const Wide<T> length = length_of<T>(q), radius = radius_at<k_tapered, T>(c_, t);
+    const Wide<T> length = length_of<T>(q), radius = Forms<T>::template radius_at<k_tapered>(c_, t);
     const Wide3<T> n = normal_of<T>(q, length, c_.on_axis);
     const Wide3<T> slip = minus(way, surface_move<T>(c_, t, radius, n));
-    const Wide3<T> moved = response<T>(is_hit, radius - length, n, way, slip, collider_.moved,
-                                       collider_.push_speed_step, collider_.friction);
+    const Wide3<T> moved = response<T>(is_hit, radius - length, n, way, slip, collider_);
     const Wide<T> least = hn::Max(most * set(T(1.0 / k_longest_lever)), set(T(1e-20)));
     return times(set(T(1)) / hn::Max(weights, least), moved);
   }
@@ -266,20 +213,21 @@ template <class T> T widest(const WovenCollider<T>& c) { return c.radius + (c.ta
 
 /// Weft edges and diagonals alone, for cells so low that nothing pokes between the two.
 template <bool k_tapered, class T>
-void contact_low_cells(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+void contact_low_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
                        const CellFeatures<T>& features, std::int64_t* contacts) {
   const Tag<T> tag;
   const WideCollider<T> c(collider);
+  const int block = rows.block;
   const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
   const T around = widest(collider) + features.around;
   const Wide<T> squared_reach = set(around * around);
   const auto width = static_cast<int>(hn::Lanes(tag));
   const int cells = lanes_in(sheet, block);
-  for (int row = first; row < last; ++row)
+  for (int row = rows.first; row < rows.last; ++row)
     for (int lane = 0; lane < cells; lane += width) {
       const std::ptrdiff_t at_a = place(sheet, block, row) + lane, at_b = place(sheet, block + 1, row) + lane;
       const Wide3<T> m = minus(times(half, plus(load(sheet.x, at_a), load(sheet.x, at_b))), c.a);
-      const Wide3<T> away = minus_times<T>(m, clamped<T>(dot(m, c.axis) * c.per_axis_squared), c.axis);
+      const Wide3<T> away = minus_times<T>(m, Forms<T>::template nearest_on_axis<false>(c, m), c.axis);
       // Each lane for itself: the answer must not depend on how many there are.
       const auto near = hn::And(dot(away, away) < squared_reach, hn::Iota(tag, lane) < set(static_cast<T>(cells)));
       if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
@@ -299,19 +247,20 @@ void contact_low_cells(const WovenSheetView<T>& sheet, int block, int first, int
 }
 
 template <bool k_tapered, class T>
-void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
                       const CellFeatures<T>& features, std::int64_t* contacts) {
   if (!features.high) {
-    contact_low_cells<k_tapered>(sheet, block, first, last, collider, features, contacts);
+    contact_low_cells<k_tapered>(sheet, rows, collider, features, contacts);
     return;
   }
   const Tag<T> tag;
   const WideCollider<T> c(collider);
   const int ends = collider.per_axis_squared > T(0) ? 2 : 1;
+  const int block = rows.block;
   const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
   const auto width = static_cast<int>(hn::Lanes(tag));
   const int cells = lanes_in(sheet, block);
-  for (int row = first; row < last; ++row)
+  for (int row = rows.first; row < rows.last; ++row)
     for (int lane = 0; lane < cells; lane += width) {
       const bool has_below = row + 1 < sheet.rows;
       Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
@@ -325,7 +274,7 @@ void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int 
                             hn::Sqrt(hn::Max(dot(to_b, to_b), hn::Max(dot(to_a, to_a), dot(to_e, to_e)))) +
                             set(T(1e-6));
       const Wide<T> squared_reach = reach * reach;
-      const Wide3<T> away = minus_times<T>(m, clamped<T>(dot(m, c.axis) * c.per_axis_squared), c.axis);
+      const Wide3<T> away = minus_times<T>(m, Forms<T>::template nearest_on_axis<false>(c, m), c.axis);
       const auto near = hn::And(dot(away, away) < squared_reach, hn::Iota(tag, lane) < set(static_cast<T>(cells)));
       if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
 
@@ -355,10 +304,10 @@ void contact_cells_as(const WovenSheetView<T>& sheet, int block, int first, int 
 }
 
 template <class T>
-void contact_cells(const WovenSheetView<T>& sheet, int block, int first, int last, const WovenCollider<T>& collider,
+void contact_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
                    const CellFeatures<T>& features, std::int64_t* contacts) {
   const auto contact = collider.taper == T(0) ? contact_cells_as<false, T> : contact_cells_as<true, T>;
-  contact(sheet, block, first, last, collider, features, contacts);
+  contact(sheet, rows, collider, features, contacts);
 }
 
 } // namespace tutu::cloth::HWY_NAMESPACE

@@ -2,6 +2,7 @@
 
 #include "cloth/state/tolerances.h"
 #include "cloth/woven/sweep.h"
+#include "proxies/distance/closed_forms.h"
 #include "proxies/distance/signed_distance.h"
 #include "proxies/motion/sweep.h"
 
@@ -17,13 +18,6 @@ template <class T> void copy(const Vec3& from, T* to) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<T>(from[axis]);
 }
 
-/// The capsule where both end balls count; where one held the other in `now`, that ball.
-proxies::Capsule without_swallowed(const proxies::Capsule& capsule, const proxies::Capsule& now) {
-  if (now.taper == 0.0 || (now.b - now.a).squaredNorm() > now.taper * now.taper) return capsule;
-  const Vec3& centre = now.taper > 0.0 ? capsule.b : capsule.a;
-  return {centre, centre, now.widest(), 0.0};
-}
-
 } // namespace
 
 template <class T>
@@ -33,9 +27,7 @@ WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& opt
   for (int block = 0; block < view.blocks; ++block)
     for (int first = 0; first < view.rows; first += k_tile_rows) {
       Tile tile;
-      tile.block = block;
-      tile.first = first;
-      tile.last = std::min(first + k_tile_rows, view.rows);
+      tile.rows = {block, first, std::min(first + k_tile_rows, view.rows)};
       tiles_.push_back(tile);
     }
   const Weave& weave = sheet.weave();
@@ -53,7 +45,7 @@ WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& opt
     edge = std::max(edge, spring.rest_length);
   }
   for (Tile& tile : tiles_)
-    for (int k = std::max(tile.first - 1, 0); k < tile.last; ++k) {
+    for (int k = std::max(tile.rows.first - 1, 0); k < tile.rows.last; ++k) {
       tile.reach = std::max(tile.reach, rows[k].reach);
       tile.weft = std::max(tile.weft, rows[k].weft);
       tile.warp = std::max(tile.warp, rows[k].warp);
@@ -84,7 +76,7 @@ template <class T> void WovenContacts<T>::find_pairs(proxies::CollisionQuery& qu
     Tile& tile = tiles_[t];
     tile.travelled = 0.0;
     T low[3], high[3];
-    kernel.bounds(sheet.view(), tile.block, tile.first, tile.last, low, high);
+    kernel.bounds(sheet.view(), tile.rows.block, tile.rows.first, tile.rows.last, low, high);
     const double grown = offset_ + tile.margin + (features_ == ContactFeatures::particles ? 0.0 : tile.reach);
     for (int axis = 0; axis < 3; ++axis) {
       boxes_[t].min()[axis] = static_cast<double>(low[axis]) + sheet.origin()[axis] - grown;
@@ -107,24 +99,24 @@ template <class T> void WovenContacts<T>::place(const Vec3& origin, double s, do
   proxies::colliders_at(input_->colliders, s, placed_);
   const double push_speed_step = k_push_out_speed * h;
   for (std::size_t k = 0; k < placed_.size(); ++k) {
-    const proxies::Capsule now = without_swallowed(placed_[k], placed_[k]),
-                           before = without_swallowed(placed_before_[k], placed_[k]);
+    // Where one end ball is all there is, it alone has moved.
+    const bool is_ball = proxies::is_one_ball(placed_[k]);
+    const proxies::Capsule now = is_ball ? proxies::wide_end(placed_[k]) : placed_[k],
+                           before = is_ball ? proxies::wide_end(placed_before_[k]) : placed_before_[k];
+    const proxies::PlainCone cone = proxies::round_cone(now);
     WovenCollider<T>& c = colliders_[k];
-    const Vec3 axis = now.b - now.a, move_a = now.a - before.a, move_b = now.b - before.b;
-    const double squared = axis.squaredNorm();
-    const bool is_sphere = !(squared > 0.0);
-    copy(Vec3(now.a - origin), c.a);
-    copy(axis, c.axis);
-    c.per_axis_squared = is_sphere ? T(0) : static_cast<T>(1.0 / squared);
-    c.radius = static_cast<T>(now.radius + offset_);
-    c.taper = static_cast<T>(now.taper);
-    c.lean =
-        now.taper == 0.0 ? T(0) : static_cast<T>(now.taper / std::sqrt(squared * (squared - now.taper * now.taper)));
+    const Vec3 move_a = now.a - before.a, move_b = now.b - before.b;
+    copy(Vec3(cone.a - origin), c.a);
+    copy(cone.axis, c.axis);
+    c.per_axis_squared = static_cast<T>(cone.per_axis_squared);
+    c.radius = static_cast<T>(cone.radius + offset_);
+    c.taper = static_cast<T>(cone.taper);
+    c.lean = static_cast<T>(cone.lean);
     copy(move_a, c.move_a);
     copy(Vec3(move_b - move_a), c.move_axis);
     Vec3 spin = Vec3::Zero();
     if (!input_->colliders.spin.empty()) spin = (s - s_before_) * input_->colliders.spin[k];
-    copy(is_sphere ? spin : Vec3(axis * (axis.dot(spin) / squared)), c.spin);
+    copy(is_ball ? spin : Vec3(cone.axis * (cone.axis.dot(spin) / cone.axis.squaredNorm())), c.spin);
     copy(proxies::normal_on_axis(now), c.on_axis);
     c.friction = input_->friction.empty() ? T(0) : static_cast<T>(input_->friction[k]);
     const double moved = std::max(move_a.norm(), move_b.norm());
@@ -151,7 +143,8 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
   place(sheet.origin(), s, h);
   bool all_numbers = true, covered = true;
   for (Tile& tile : tiles_) {
-    const double way = std::sqrt(static_cast<double>(kernel.farthest(view, tile.block, tile.first, tile.last)));
+    const double way =
+        std::sqrt(static_cast<double>(kernel.farthest(view, tile.rows.block, tile.rows.first, tile.rows.last)));
     all_numbers = all_numbers && way < k_world_radius; // false for what is no number
     tile.way = way;
     tile.travelled += way;
@@ -180,10 +173,9 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
       }
       if (travelled < pair.wake) continue;
       ++counts_.queries;
-      const T gap = pair.collider == ground
-                        ? kernel.contact_plane(view, tile.block, tile.first, tile.last, *ground_, &counts_.contacts)
-                        : kernel.contact_capsule(view, tile.block, tile.first, tile.last, colliders_[pair.collider],
-                                                 pair.rise, &counts_.contacts);
+      const T gap = pair.collider == ground ? kernel.contact_plane(view, tile.rows, *ground_, &counts_.contacts)
+                                            : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider],
+                                                                     pair.rise, &counts_.contacts);
       pair.wake = travelled + static_cast<double>(gap) - k_tile_travel_slack;
     }
     tile.touched = counts_.contacts != before;
@@ -198,8 +190,8 @@ template <class T> void WovenContacts<T>::sweep(WovenSheet<T>& sheet, const Tile
   collider.end = placed_[pair.collider];
   if (!input_->colliders.spin.empty()) collider.spin = s_step_ * input_->colliders.spin[pair.collider];
   collider.offset = offset_;
-  counts_.contacts +=
-      sweep_tile(sheet, tile.block, tile.first, tile.last, collider, pair.features.wide || pair.in_haste);
+  counts_.contacts += sweep_tile(sheet, tile.rows.block, tile.rows.first, tile.rows.last, collider,
+                                 pair.features.wide || pair.in_haste);
 }
 
 template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(const Tile& tile, int collider) const {
@@ -240,11 +232,11 @@ template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& ke
       const Pair& pair = pairs_[p];
       const double gap = pair.wake - tile.travelled - collider_travel_[pair.collider];
       if (!(pair.features.wide || pair.in_haste) || gap > (pair.in_haste ? tile.reach : reach_of(tile, pair))) continue;
-      if (!has_halo && needs_halo(view, tile.block)) {
+      if (!has_halo && needs_halo(view, tile.rows.block)) {
         kernel.fetch_halo(view);
         has_halo = true;
       }
-      kernel.contact_cells(view, tile.block, tile.first, tile.last, colliders_[pair.collider],
+      kernel.contact_cells(view, tile.rows, colliders_[pair.collider],
                            pair.in_haste ? all_features(tile) : pair.features, &counts_.contacts);
     }
     tile.touched = tile.touched || counts_.contacts != before;
@@ -256,7 +248,8 @@ template <class T>
 bool WovenContacts<T>::finish(WovenFinish<T> kernel, const WovenSheetView<T>& view, const WovenStep<T>& step) {
   bool all_numbers = true;
   for (Tile& tile : tiles_) {
-    const double way = std::sqrt(static_cast<double>(kernel(view, step, tile.block, tile.first, tile.last)));
+    const double way =
+        std::sqrt(static_cast<double>(kernel(view, step, tile.rows.block, tile.rows.first, tile.rows.last)));
     all_numbers = all_numbers && way < k_world_radius;
     // From where the tile was measured, contacts took it at most back and on to where it is now.
     if (tile.touched) tile.travelled += tile.way + way;

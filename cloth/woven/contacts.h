@@ -10,8 +10,8 @@
 
 namespace tutu::cloth {
 
-/// The `hybrid` way: boxes of tiles against the swept boxes of colliders once a frame, closed form for whole vectors in
-/// each substep.
+/// For backends that leave contacts to who asks (CollisionQuery::leaves_contacts): boxes of tiles against the swept
+/// boxes of colliders once a frame, the closed forms for whole vectors in each substep.
 ///
 /// A tile is some rows of one block. Pairs that cannot have met since they were last measured are skipped, exactly:
 /// distance is 1-Lipschitz, so a pair at distance d stays apart until the tile's fastest particle and the collider have
@@ -42,7 +42,7 @@ public:
 
 private:
   struct Tile {
-    int block = 0, first = 0, last = 0;            ///< rows first..last-1
+    WovenRows rows;
     double weft = 0.0, warp = 0.0, diagonal = 0.0; ///< m, the longest of a cell's edges at rest
     double reach = 0.0;                            ///< m: no point of a cell is farther from a corner
     double margin = 0.0;                           ///< m its particles may go before colliders are looked for again

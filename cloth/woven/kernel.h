@@ -98,9 +98,21 @@ template <class T> struct WovenStep {
   int closing_sweeps = 1; ///< Gauss-Seidel over the warp edges after it
 };
 
+/// Rows first..last-1 of one block.
+struct WovenRows {
+  int block = 0, first = 0, last = 0;
+};
+
+/// How a surface treats what it meets.
+template <class T> struct WovenSurface {
+  T friction = 0;
+  T moved = 0;           ///< m its fastest point moved since the substep's start
+  T push_speed_step = 0; ///< m a point may be pushed beyond what it and the surface moved: h * push-out speed
+};
+
 /// A placed collider. With no direction (a == b) it is a sphere. A capsule whose one end ball holds the other comes as
 /// that ball.
-template <class T> struct WovenCollider {
+template <class T> struct WovenCollider : WovenSurface<T> {
   T a[3] = {}, axis[3] = {};           ///< axis = b - a, m
   T per_axis_squared = 0;              ///< 1 / |axis|^2; 0 for a sphere
   T radius = 0;                        ///< at a, with the contact offset, m
@@ -109,9 +121,6 @@ template <class T> struct WovenCollider {
   T move_a[3] = {}, move_axis[3] = {}; ///< since the substep's start: of a, and of b less that of a
   T spin[3] = {};                      ///< rotation vector since then about the own axis (a sphere: about any), rad
   T on_axis[3] = {};                   ///< normal for points on the axis
-  T friction = 0;
-  T moved = 0;           ///< m the faster end moved
-  T push_speed_step = 0; ///< m a point may be pushed beyond what it and the surface moved: h * push-out speed
 };
 
 /// Which features of a cell are asked besides its corners.
@@ -122,11 +131,9 @@ template <class T> struct CellFeatures {
 };
 
 /// The half space normal . x <= offset.
-template <class T> struct WovenPlane {
+template <class T> struct WovenPlane : WovenSurface<T> {
   T normal[3] = {};
   T offset = 0; ///< with the contact offset, m
-  T friction = 0;
-  T push_speed_step = 0;
 };
 
 template <class T>
@@ -161,14 +168,14 @@ template <class T> struct WovenKernel {
   /// Pushes free particles out of a collider and rubs. Returns the smallest distance of one to the surface (with the
   /// offset) before that, m, and adds to `contacts`.
   /// `rise` adds to the collider's radius.
-  T (*contact_capsule)(Sheet, int block, int first, int last, const WovenCollider<T>&, T rise, std::int64_t* contacts);
-  T (*contact_plane)(Sheet, int block, int first, int last, const WovenPlane<T>&, std::int64_t* contacts);
+  T (*contact_capsule)(Sheet, const WovenRows&, const WovenCollider<T>&, T rise, std::int64_t* contacts);
+  T (*contact_plane)(Sheet, const WovenRows&, const WovenPlane<T>&, std::int64_t* contacts);
 
   /// Edges and faces of the cells between a block and the next, from row `first` to the one below `last` - 1. Before
   /// those of the first block that needs_halo() the halo must be fetched (positions and starts), and given back after
   /// the last block's.
   void (*fetch_halo)(Sheet);
-  void (*contact_cells)(Sheet, int block, int first, int last, const WovenCollider<T>&, const CellFeatures<T>& features,
+  void (*contact_cells)(Sheet, const WovenRows&, const WovenCollider<T>&, const CellFeatures<T>& features,
                         std::int64_t* contacts);
   void (*return_halo)(Sheet);
 };

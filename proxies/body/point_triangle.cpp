@@ -1,5 +1,7 @@
 #include "proxies/body/point_triangle.h"
 
+#include "proxies/distance/signed_distance.h"
+
 #include <array>
 
 namespace tutu::proxies {
@@ -10,11 +12,9 @@ struct OnSegment {
   double distance_squared;
 };
 
-OnSegment nearest_on_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
-  const Vec3 along = to - from;
-  const double length_squared = along.squaredNorm();
-  const double t = length_squared > 0.0 ? std::clamp((point - from).dot(along) / length_squared, 0.0, 1.0) : 0.0;
-  return {t, (point - (from + t * along)).squaredNorm()};
+OnSegment on_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
+  const double t = nearest_on_axis(point, {from, to});
+  return {t, (point - (from + t * (to - from))).squaredNorm()};
 }
 
 MeshFeature feature(MeshFeature first, int index) { return static_cast<MeshFeature>(static_cast<int>(first) + index); }
@@ -24,9 +24,9 @@ MeshFeature feature(MeshFeature first, int index) { return static_cast<MeshFeatu
 OnTriangle detail::nearest_on_edges(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c) {
   const std::array<const Vec3*, 3> corners = {&a, &b, &c};
   int edge = 0;
-  OnSegment best = nearest_on_segment(point, a, b);
+  OnSegment best = on_segment(point, a, b);
   for (int e = 1; e < 3; ++e) {
-    const OnSegment other = nearest_on_segment(point, *corners[e], *corners[(e + 1) % 3]);
+    const OnSegment other = on_segment(point, *corners[e], *corners[(e + 1) % 3]);
     if (other.distance_squared < best.distance_squared) best = other, edge = e;
   }
   const int next = (edge + 1) % 3;

@@ -1,10 +1,9 @@
 // Signed distance of a point from all colliders together: the cheap closed form, without normals.
 #pragma once
 
-#include "proxies/shapes.h"
+#include "proxies/distance/closed_forms.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <span>
 #include <vector>
@@ -27,29 +26,16 @@ public:
 
   void assign(std::span<const Capsule> capsules) {
     parts_.clear();
-    for (const Capsule& capsule : capsules) {
-      const Vec3 axis = capsule.b - capsule.a;
-      const double squared = axis.squaredNorm(), taper = capsule.taper;
-      if (taper == 0.0) parts_.push_back({capsule.a, axis, squared > 0.0 ? 1.0 / squared : 0.0, capsule.radius, 0, 0});
-      else if (taper * taper < squared) {
-        const double lean = taper / std::sqrt(squared * (squared - taper * taper));
-        parts_.push_back({capsule.a, axis, 1.0 / squared, capsule.radius, taper, lean});
-      } else { // one ball holds the other
-        parts_.push_back({taper > 0.0 ? capsule.b : capsule.a, Vec3::Zero(), 0.0, capsule.widest(), 0, 0});
-      }
-    }
+    for (const Capsule& capsule : capsules) parts_.push_back(round_cone(capsule));
   }
 
   std::size_t size() const { return parts_.size(); }
 
   double distance(const Vec3& point, std::size_t capsule) const {
-    const Part& part = parts_[capsule];
-    const Vec3 from_a = point - part.a;
-    const double foot = from_a.dot(part.axis) * part.inverse_squared;
-    if (part.taper == 0.0) return (from_a - std::clamp(foot, 0.0, 1.0) * part.axis).norm() - part.radius;
-    const double across = (from_a - foot * part.axis).norm(); // as in nearest_on_axis
-    const double t = std::clamp(foot + across * part.lean, 0.0, 1.0);
-    return (from_a - t * part.axis).norm() - part.radius - t * part.taper;
+    const PlainCone& cone = parts_[capsule];
+    const Vec3 from_a = point - cone.a;
+    if (cone.taper == 0.0) return PlainForms::distance<false>(cone, from_a);
+    return PlainForms::distance<true>(cone, from_a);
   }
 
   Nearest nearest(const Vec3& point) const {
@@ -70,13 +56,7 @@ public:
   }
 
 private:
-  struct Part {
-    Vec3 a, axis;           ///< b - a
-    double inverse_squared; ///< 1 / |axis|^2; 0 for a sphere
-    double radius, taper;
-    double lean; ///< what a unit of distance from the axis adds to the nearest ball's share of it, 1/m
-  };
-  std::vector<Part> parts_;
+  std::vector<PlainCone> parts_;
 };
 
 } // namespace tutu::proxies

@@ -31,10 +31,7 @@ struct FeatureContact : Contact {
 /// `side`: roughly the direction from collider to cloth before they could cross, of any length; zero where unknown.
 /// It is looked at only where edge and axis meet: the normal is then perpendicular to both, on that side; beside a cone
 /// perpendicular to the edge and leaning as the cone does. No length, of edge or axis, is too small.
-///
-/// With a taper |p + s u - a - t v| - radius_at(t) is convex in (s, t). For s without bounds it is least at the t where
-/// the n with n . u = 0 and n . v = -taper faces the edge's line, or at the wide end where there is no such n, and
-/// within [0, 1] at the bound next to it; where the s that belongs to that t is out of bounds, at the bound of s.
+/// ClosedForms::nearest_of_cone has the form.
 FeatureContact edge_contact(const Vec3& p, const Vec3& q, const Capsule& capsule, const Vec3& side);
 
 /// The triangle p0 p1 p2 against a capsule, or a sphere (a == b) [Ericson 2005, 5.1.5, 5.1.10]. `side` as above; where

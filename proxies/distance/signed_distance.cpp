@@ -1,6 +1,5 @@
 #include "proxies/distance/signed_distance.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace tutu::proxies {
@@ -25,18 +24,6 @@ Vec3 normal_on_axis(const Capsule& capsule) {
   return std::sqrt(1.0 - lean * lean) * across - lean * u;
 }
 
-double nearest_on_axis(const Vec3& point, const Capsule& capsule) {
-  const Vec3 axis = capsule.b - capsule.a, from_a = point - capsule.a;
-  const double length_squared = axis.squaredNorm();
-  if (!(length_squared > 0.0)) return capsule.taper > 0.0 ? 1.0 : 0.0;
-  const double foot = from_a.dot(axis) / length_squared;
-  if (capsule.taper == 0.0) return std::clamp(foot, 0.0, 1.0);
-  const double cosine_squared = length_squared - capsule.taper * capsule.taper; // times |axis|^2
-  if (!(cosine_squared > 0.0)) return capsule.taper > 0.0 ? 1.0 : 0.0;
-  const double across = (from_a - foot * axis).norm();
-  return std::clamp(foot + across * capsule.taper / std::sqrt(length_squared * cosine_squared), 0.0, 1.0);
-}
-
 Contact signed_distance(const Vec3& point, const Capsule& capsule) {
   const double t = nearest_on_axis(point, capsule), radius = capsule.radius_at(t);
   const Vec3 nearest = capsule.a + t * (capsule.b - capsule.a);
@@ -52,7 +39,7 @@ Contact signed_distance(const Vec3& point, const Capsule& capsule) {
 }
 
 Contact signed_distance(const Vec3& point, const Plane& plane) {
-  const double distance = plane.normal.dot(point) - plane.offset;
+  const double distance = PlainForms::height(plane.normal, plane.offset, point);
   return {distance, plane.normal, point - distance * plane.normal};
 }
 

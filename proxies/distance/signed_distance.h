@@ -2,6 +2,7 @@
 #pragma once
 
 #include "proxies/contact.h"
+#include "proxies/distance/closed_forms.h"
 #include "proxies/shapes.h"
 
 namespace tutu::proxies {
@@ -19,12 +20,6 @@ inline constexpr double k_vertical = 1e-12;
 /// since there |p - c(t)| - r(t) is least along the axis, and rises the same way on both sides of c(t).
 /// 0 without taper; +-1 where the larger end ball is all there is.
 double cone_sine(const Capsule& capsule);
-
-/// The centre, as share of the axis, of the ball whose surface is nearest to the point (that it is deepest in).
-/// With h along the axis from a and rho across it [derived from n . (b - a) = -taper]:
-///   t = clamp((h + rho s / sqrt(1 - s^2)) / |b - a|), s = cone_sine;
-/// without taper that is the foot on the axis [Ericson 2005, Real-Time Collision Detection, 5.1.2].
-double nearest_on_axis(const Vec3& point, const Capsule& capsule);
 
 /// Distance to the nearest ball's centre minus its radius: exact, inside and out, for the union of all balls is convex.
 /// A point on the axis has no unique normal: it gets normal_on_axis.

@@ -1,6 +1,7 @@
 #include "proxies/query/collision_query.h"
 
 #include "proxies/detail/query_guard.h"
+#include "proxies/distance/closed_forms.h"
 #include "proxies/distance/signed_distance.h"
 #include "proxies/motion/collider_motion.h"
 #include "proxies/query/detail/box_list.h"
@@ -61,38 +62,18 @@ void end_row(const SweptColliders& colliders, Candidates& out) {
 /// The points within a reach of a collider at any time of the frame, and few others.
 class Neighbourhood {
 public:
-  Neighbourhood(const Capsule& start, const Capsule& end, double reach) {
-    const Capsule cover = swept_cover(start, end);
-    from_ = cover.a;
-    axis_ = cover.b - cover.a;
-    const double length_squared = axis_.squaredNorm(), upright = length_squared - cover.taper * cover.taper;
-    share_of_axis_ = length_squared > k_least_square ? 1.0 / length_squared : 0.0;
-    limit_ = cover.radius + reach;
-    if (cover.taper != 0.0 && upright > k_least_square) {
-      taper_ = cover.taper;
-      lean_ = taper_ / std::sqrt(length_squared * upright);
-    } else if (share_of_axis_ == 0.0 || cover.taper != 0.0) { // one ball about a holds it
-      limit_ = cover.widest() + reach + axis_.norm();
-      share_of_axis_ = 0.0;
-    }
+  Neighbourhood(const Capsule& start, const Capsule& end, double reach) : cone_(round_cone(swept_cover(start, end))) {
+    cone_.radius += reach;
   }
 
   bool holds(const Vec3& point) const {
-    const Vec3 from = point - from_;
-    const double foot = from.dot(axis_) * share_of_axis_;
-    // As in nearest_on_axis.
-    const double t = std::clamp(lean_ == 0.0 ? foot : foot + (from - foot * axis_).norm() * lean_, 0.0, 1.0);
-    const double limit = limit_ + t * taper_;
-    return (from - t * axis_).squaredNorm() <= limit * limit;
+    const Vec3 from_a = point - cone_.a;
+    const double t = nearest_on_axis(cone_, from_a), limit = radius_at(cone_, t);
+    return (from_a - t * cone_.axis).squaredNorm() <= limit * limit;
   }
 
 private:
-  static constexpr double k_least_square = 1e-200; // m2; shorter axes (1e-100 m) count as points: 1 / it is finite
-
-  Vec3 from_, axis_;
-  double share_of_axis_ = 0.0; // 1 / |axis|^2; 0 for a sphere
-  double limit_ = 0.0;         // distance from the axis at a
-  double taper_ = 0.0, lean_ = 0.0;
+  PlainCone cone_;
 };
 
 void find_neighbourhoods(const SweptColliders& colliders, double reach, std::vector<Neighbourhood>& out) {
@@ -122,8 +103,6 @@ private:
 
 class BruteQuery final : public ClosedFormQuery {
 public:
-  std::string_view name() const override { return "brute"; }
-
   void find_candidates(const SweptColliders& colliders, std::span<const Vec3> points, double reach,
                        Candidates& out) override {
     require_usable_frame(colliders);
@@ -149,8 +128,6 @@ private:
 
 class FclQuery final : public CollisionQuery {
 public:
-  std::string_view name() const override { return "fcl"; }
-
   void find_candidates(const SweptColliders& colliders, std::span<const Vec3> points, double reach,
                        Candidates& out) override {
     require_usable_frame(colliders);
@@ -205,7 +182,7 @@ private:
 
 class HybridQuery final : public ClosedFormQuery {
 public:
-  std::string_view name() const override { return "hybrid"; }
+  bool leaves_contacts() const override { return true; }
 
   void find_candidates(const SweptColliders& colliders, std::span<const Vec3> points, double reach,
                        Candidates& out) override {

@@ -4,6 +4,7 @@
 //             find_for_boxes(swept colliders, boxes)               and for whatever has a box: edges, triangles, tiles
 // a substep:  place(colliders at this moment)                      then, for each candidate pair,
 //             contact(point, collider)                             narrow phase: distance, normal, closest point
+//             (or neither, where leaves_contacts(): the closed forms of proxies/distance, for many points at once)
 //
 // Against the true body in the place of proxies: make_mesh_query, and place_body beside place.
 #pragma once
@@ -35,7 +36,11 @@ class CollisionQuery {
 public:
   virtual ~CollisionQuery() = default;
 
-  virtual std::string_view name() const = 0; ///< as on the command line: one of k_backend_names
+  /// Whether who asks may work contacts out itself: true where contact() is no more than the closed forms
+  /// (proxies/distance/closed_forms_inl.h) of the collider, and the backend's worth is in its candidates. Cloth that
+  /// has vectors of particles then asks for candidates alone, and takes the same forms for as many points at once as a
+  /// vector holds; place() and contact() are for those that have one point at a time.
+  virtual bool leaves_contacts() const { return false; }
 
   /// For each point every collider whose surface comes within `reach` (m, >= 0) of it at any time of the frame. May
   /// hold more, never fewer. The ground (index size()) is always a candidate where there is one. Points and colliders
@@ -61,9 +66,9 @@ public:
 };
 
 enum class Backend {
-  fcl,    ///< FCL tree, per particle; FCL distance asked in the one sound way
-  hybrid, ///< FCL tree or a plain list, whichever is quicker, per run of particles; closed form in double
-  brute,  ///< every pair, closed form in double: the twin that tests compare with
+  fcl,    ///< candidates by FCL's tree, per particle; contacts by FCL's distance, asked in the one sound way
+  hybrid, ///< candidates by FCL's tree or a list, whichever is quicker; contacts, the closed forms, left to who asks
+  brute,  ///< every pair is a candidate; contacts by the closed forms: the twin that tests compare with
   mesh    ///< no proxies: the true, skinned body (BodyMesh), for reference runs
 };
 

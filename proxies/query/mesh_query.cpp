@@ -15,8 +15,6 @@ public:
   explicit MeshQuery(BodyMesh body)
       : body_(std::move(body)), now_(body_.positions().begin(), body_.positions().end()) {}
 
-  std::string_view name() const override { return k_backend_names[static_cast<std::size_t>(Backend::mesh)]; }
-
   void find_candidates(const SweptColliders& colliders, std::span<const Vec3> points, double reach,
                        Candidates& out) override {
     require_usable(points, reach);

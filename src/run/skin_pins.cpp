@@ -1,5 +1,7 @@
 #include "src/run/skin_pins.h"
 
+#include "proxies/body/point_triangle.h"
+
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -19,30 +21,6 @@ Matrix3 frame_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   frame.col(2) = normal / normal_length;
   frame.col(1) = frame.col(2).cross(frame.col(0));
   return frame;
-}
-
-/// Barycentric weights of the point of segment a..b nearest to p.
-std::array<double, 2> nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 along = b - a;
-  const double squared = along.squaredNorm();
-  const double t = squared > 0.0 ? std::clamp((p - a).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return {1.0 - t, t};
-}
-
-/// Barycentric weights of the point of the triangle nearest to p.
-Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 normal = (b - a).cross(c - a);
-  const double squared = normal.squaredNorm();
-  if (squared > 0.0) { // by the areas of the three triangles that p's foot makes with the sides
-    const Vec3 weights(normal.dot((c - b).cross(p - b)) / squared, normal.dot((a - c).cross(p - c)) / squared,
-                       normal.dot((b - a).cross(p - a)) / squared);
-    if (weights.minCoeff() >= 0.0) return weights;
-  }
-  const auto ab = nearest_on_segment(p, a, b), bc = nearest_on_segment(p, b, c), ca = nearest_on_segment(p, c, a);
-  const std::array<Vec3, 3> on_sides = {Vec3(ab[0], ab[1], 0), Vec3(0, bc[0], bc[1]), Vec3(ca[1], 0, ca[0])};
-  const auto distance = [&](const Vec3& w) { return (w[0] * a + w[1] * b + w[2] * c - p).squaredNorm(); };
-  return *std::min_element(on_sides.begin(), on_sides.end(),
-                           [&](const Vec3& x, const Vec3& y) { return distance(x) < distance(y); });
 }
 
 /// Takes over what the mesh of the bindings needs of the character's, and renames their corners.
@@ -92,14 +70,13 @@ SkinPins bind_to_skin(const cloth::Garment& garment, const rig::Character& chara
     binding.pin = k;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       const Vec3 &a = rest[triangles[t][0]], &b = rest[triangles[t][1]], &c = rest[triangles[t][2]];
-      const Vec3 weights = nearest_on_triangle(p, a, b, c);
-      const Vec3 away = p - (weights[0] * a + weights[1] * b + weights[2] * c);
-      if (!(away.squaredNorm() < least)) continue;
-      least = away.squaredNorm();
+      const proxies::MeshPoint on = proxies::nearest_on_triangle(p, a, b, c);
+      if (!(on.distance < least)) continue;
+      least = on.distance;
       binding.triangle = t;
       binding.corners = triangles[t];
-      binding.weights = weights;
-      binding.offset = frame_of(a, b, c).transpose() * away;
+      binding.weights = on.weights;
+      binding.offset = frame_of(a, b, c).transpose() * (p - on.closest);
     }
     pins.bindings.push_back(binding);
   }

@@ -6,10 +6,10 @@
 #include "cloth/garment/garment.h"
 #include "cloth/state/tolerances.h"
 #include "cloth/woven/kernel.h"
-#include "proxies/distance/feature_contact.h"
-#include "proxies/distance/signed_distance.h"
+#include "tests/support/nearest_search.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -132,10 +132,10 @@ public:
     risen.now.radius = shape.radius;
     double least = std::numeric_limits<double>::max();
     for_block(block, first, last, [&](int i) {
-      const proxies::Contact contact = proxies::signed_distance(x[i], shape);
+      const Searched contact = search_point(x[i], shape);
       least = std::min(least, contact.distance);
       if (inverse_mass_[i] == 0.0 || contact.distance >= 0.0) return;
-      const Vec3 surface = risen.surface_way(proxies::nearest_on_axis(x[i], shape), contact.normal);
+      const Vec3 surface = risen.surface_way(contact.t, contact.normal);
       x[i] += response(-contact.distance, contact.normal, x[i] - was[i], surface, collider.moved(),
                        collider.push_speed_step, collider.friction);
       ++*contacts;
@@ -146,11 +146,11 @@ public:
   double contact_plane(int block, int first, int last, const TwinPlane& plane, std::int64_t* contacts) {
     double least = std::numeric_limits<double>::max();
     for_block(block, first, last, [&](int i) {
-      const proxies::Contact contact = proxies::signed_distance(x[i], plane.plane);
-      least = std::min(least, contact.distance);
-      if (inverse_mass_[i] == 0.0 || contact.distance >= 0.0) return;
-      x[i] += response(-contact.distance, contact.normal, x[i] - was[i], Vec3::Zero(), 0.0, plane.push_speed_step,
-                       plane.friction);
+      const Vec3& n = plane.plane.normal;
+      const double height = n.x() * x[i].x() + n.y() * x[i].y() + n.z() * x[i].z() - plane.plane.offset;
+      least = std::min(least, height);
+      if (inverse_mass_[i] == 0.0 || height >= 0.0) return;
+      x[i] += response(-height, n, x[i] - was[i], Vec3::Zero(), 0.0, plane.push_speed_step, plane.friction);
       ++*contacts;
     });
     return least;
@@ -296,42 +296,45 @@ private:
 
   /// Moves the corners so that sum_k share_k * corner_k moves by the response, each by its inverse mass times share.
   template <std::size_t N>
-  void spread(const std::array<int, N>& corners, const proxies::FeatureContact& contact, const TwinCollider& collider,
-              std::int64_t* contacts) {
+  void spread(const std::array<int, N>& corners, const std::array<double, N>& shares, const Searched& contact,
+              const TwinCollider& collider, std::int64_t* contacts) {
     double weights = 0.0, mass = 0.0, most = 0.0;
     Vec3 way = Vec3::Zero();
     for (std::size_t k = 0; k < N; ++k) {
-      weights += inverse_mass_[corners[k]] * contact.weights[k] * contact.weights[k];
+      weights += inverse_mass_[corners[k]] * shares[k] * shares[k];
       mass += inverse_mass_[corners[k]];
-      most = std::max(most, inverse_mass_[corners[k]] * contact.weights[k]);
-      way += contact.weights[k] * (x[corners[k]] - was[corners[k]]);
+      most = std::max(most, inverse_mass_[corners[k]] * shares[k]);
+      way += shares[k] * (x[corners[k]] - was[corners[k]]);
     }
     if (mass == 0.0) return;
     ++*contacts;
     if (weights == 0.0) return;                                 // at a pinned corner exactly
     weights = std::max(weights, most / cloth::k_longest_lever); // near one the others are not thrown
-    const Vec3 moved =
-        response(-contact.distance, contact.normal, way, collider.surface_way(contact.on_axis, contact.normal),
-                 collider.moved(), collider.push_speed_step, collider.friction);
-    for (std::size_t k = 0; k < N; ++k)
-      x[corners[k]] += inverse_mass_[corners[k]] * contact.weights[k] / weights * moved;
+    const Vec3 moved = response(-contact.distance, contact.normal, way, collider.surface_way(contact.t, contact.normal),
+                                collider.moved(), collider.push_speed_step, collider.friction);
+    for (std::size_t k = 0; k < N; ++k) x[corners[k]] += inverse_mass_[corners[k]] * shares[k] / weights * moved;
   }
 
   void edge_contact(int a, int b, const TwinCollider& collider, std::int64_t* contacts) {
-    const auto contact = proxies::edge_contact(x[a], x[b], collider.now, Vec3::Zero());
+    if (least_distance(0.5 * (x[a] + x[b]), 0.5 * (x[b] - x[a]).norm(), collider.now) > k_grazing) return;
+    const Searched contact = search_edge(x[a], x[b], collider.now, 46); // places to 1e-14
     grazing += std::abs(contact.distance) < k_grazing;
-    if (contact.distance < 0.0) spread<2>({a, b}, contact, collider, contacts);
+    if (contact.distance < 0.0) spread<2>({a, b}, {1.0 - contact.s, contact.s}, contact, collider, contacts);
   }
 
+  /// An end of the axis over the inside of a triangle: of the points of the plane by least squares the nearest one.
   void face_contact(const std::array<int, 3>& corners, int end, const TwinCollider& collider, std::int64_t* contacts) {
-    const Vec3& centre = end == 0 ? collider.now.a : collider.now.b;
-    auto contact = proxies::triangle_contact(x[corners[0]], x[corners[1]], x[corners[2]],
-                                             {centre, centre, collider.now.radius_at(end), 0.0}, Vec3::Zero());
-    if (contact.feature != proxies::ClothFeature::face) return;
+    const Vec3 &origin = x[corners[0]], &centre = end == 0 ? collider.now.a : collider.now.b;
+    Eigen::Matrix<double, 3, 2> sides;
+    sides << x[corners[1]] - origin, x[corners[2]] - origin;
+    const Eigen::Vector2d foot = sides.colPivHouseholderQr().solve(centre - origin);
+    const std::array<double, 3> shares = {1.0 - foot.sum(), foot[0], foot[1]};
+    if (*std::min_element(shares.begin(), shares.end()) < 0.0) return;
+    const Vec3 away = origin + sides * foot - centre;
+    const Searched contact{
+        away.norm() - collider.now.radius_at(end), {}, static_cast<double>(end), 0.0, away.normalized()};
     grazing += std::abs(contact.distance) < k_grazing;
-    if (contact.distance >= 0.0) return;
-    contact.on_axis = end;
-    spread<3>(corners, contact, collider, contacts);
+    if (contact.distance < 0.0) spread<3>(corners, shares, contact, collider, contacts);
   }
 
   const cloth::Garment* garment_;

@@ -16,44 +16,51 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, k_lanes>;
 using Wide = hn::Vec<Tag>;
 
-/// Capsules against points, one of each a lane; either may be the same in all lanes.
-struct Shapes {
-  Wide ax, ay, az, dx, dy, dz, inverse_square, radius, taper, lean;
+/// For the closed forms. Never fused, so that the bits are those of every target.
+struct UnfusedArithmetic {
+  using Real = Wide;
+  struct Vector {
+    Wide x, y, z;
+  };
+  static HWY_INLINE Wide set(double x) { return hn::Set(Tag(), static_cast<float>(x)); }
+  static HWY_INLINE Wide min(Wide x, Wide y) { return hn::Min(x, y); }
+  static HWY_INLINE Wide max(Wide x, Wide y) { return hn::Max(x, y); }
+  static HWY_INLINE Wide dot(const Vector& v, const Vector& w) { return (v.x * w.x + v.y * w.y) + v.z * w.z; }
+  static HWY_INLINE Wide length(const Vector& v) { return hn::Sqrt(dot(v, v)); }
+  static HWY_INLINE Vector minus_times(const Vector& v, Wide s, const Vector& w) {
+    return {v.x - s * w.x, v.y - s * w.y, v.z - s * w.z};
+  }
 };
 
-HWY_INLINE Wide dot(Wide ax, Wide ay, Wide az, Wide bx, Wide by, Wide bz) { return (ax * bx + ay * by) + az * bz; }
+#include "proxies/distance/closed_forms_inl.h"
+
+using Forms = ClosedForms<UnfusedArithmetic>;
+using Shapes = RoundCone<UnfusedArithmetic>; // one a lane; may be the same in all
 
 template <bool k_tapered> HWY_INLINE Wide distances(const Shapes& s, Wide x, Wide y, Wide z) {
-  const Tag tag;
-  const Wide px = x - s.ax, py = y - s.ay, pz = z - s.az;
-  Wide t = dot(px, py, pz, s.dx, s.dy, s.dz) * s.inverse_square;
-  if constexpr (k_tapered) {
-    const Wide ux = px - t * s.dx, uy = py - t * s.dy, uz = pz - t * s.dz;
-    t = t + hn::Sqrt(dot(ux, uy, uz, ux, uy, uz)) * s.lean;
-  }
-  t = hn::Min(hn::Max(t, hn::Zero(tag)), hn::Set(tag, 1.0f));
-  const Wide vx = px - t * s.dx, vy = py - t * s.dy, vz = pz - t * s.dz;
-  const Wide distance = hn::Sqrt(dot(vx, vy, vz, vx, vy, vz)) - s.radius;
+  const UnfusedArithmetic::Vector d = {x - s.a.x, y - s.a.y, z - s.a.z};
+  const Wide t = Forms::nearest_on_axis<k_tapered>(s, d);
+  const Wide distance = UnfusedArithmetic::length(UnfusedArithmetic::minus_times(d, t, s.axis)) - s.radius;
   if constexpr (k_tapered) return distance - t * s.taper;
   return distance;
 }
 
-/// One shape in all lanes.
-HWY_INLINE Shapes same(const ShapeArrays& a, std::size_t i) {
-  const Tag tag;
-  return {hn::Set(tag, a.ax[i]),
-          hn::Set(tag, a.ay[i]),
-          hn::Set(tag, a.az[i]),
-          hn::Set(tag, a.dx[i]),
-          hn::Set(tag, a.dy[i]),
-          hn::Set(tag, a.dz[i]),
-          hn::Set(tag, a.inverse_square[i]),
-          hn::Set(tag, a.radius[i]),
-          hn::Set(tag, a.taper[i]),
-          hn::Set(tag, a.lean[i])};
+HWY_INLINE Wide load(const float* from) { return hn::LoadU(Tag(), from); }
+
+/// What `lanes` makes of each array.
+template <class Lanes> HWY_INLINE Shapes shapes_of(const ShapeArrays& a, const Lanes& lanes) {
+  return {{lanes(a.ax), lanes(a.ay), lanes(a.az)},
+          {lanes(a.dx), lanes(a.dy), lanes(a.dz)},
+          lanes(a.inverse_square),
+          lanes(a.radius),
+          lanes(a.taper),
+          lanes(a.lean)};
 }
 
-HWY_INLINE Wide load(const float* from) { return hn::LoadU(Tag(), from); }
+/// One shape in all lanes.
+HWY_INLINE Shapes same(const ShapeArrays& a, std::size_t i) {
+  return shapes_of(a, [i](const float* of) HWY_ATTR { return hn::Set(Tag(), of[i]); });
+}
 
 void from_shapes(const ShapeArrays& a, std::size_t first, int count, float x, float y, float z, float* out) {
   const Tag tag;
@@ -61,16 +68,7 @@ void from_shapes(const ShapeArrays& a, std::size_t first, int count, float x, fl
   const Wide wide_x = hn::Set(tag, x), wide_y = hn::Set(tag, y), wide_z = hn::Set(tag, z);
   for (int k = 0; k < count; k += width) {
     const std::size_t i = first + k;
-    const Shapes shapes = {load(a.ax + i),
-                           load(a.ay + i),
-                           load(a.az + i),
-                           load(a.dx + i),
-                           load(a.dy + i),
-                           load(a.dz + i),
-                           load(a.inverse_square + i),
-                           load(a.radius + i),
-                           load(a.taper + i),
-                           load(a.lean + i)};
+    const Shapes shapes = shapes_of(a, [i](const float* of) HWY_ATTR { return load(of + i); });
     hn::StoreU(distances<true>(shapes, wide_x, wide_y, wide_z), tag, out + k);
   }
 }

@@ -1,5 +1,6 @@
 #include "proxies/fit/detail/model.h"
 
+#include "proxies/distance/closed_forms.h"
 #include "rig/strong_poses.h"
 
 #include <algorithm>
@@ -172,21 +173,11 @@ void PosedShapes::resize() {
 
 void PosedShapes::set(std::size_t i, const Capsule& capsule) {
   capsules[i] = capsule;
-  // As CapsuleUnion: where one ball holds the other it is all there is.
-  double squared = (capsule.b - capsule.a).squaredNorm(), taper = capsule.taper, lean = 0.0;
   Capsule shape = capsule;
-  if (!(squared > std::max(1e-12, taper * taper))) {
-    if (taper > 0.0) shape.a = capsule.b;
-    shape.b = shape.a;
-    shape.radius = capsule.widest();
-    squared = taper = 0.0;
-  } else if (taper != 0.0) {
-    lean = taper / std::sqrt(squared * (squared - taper * taper));
-  }
-  const Vec3 d = shape.b - shape.a;
+  if (!((capsule.b - capsule.a).squaredNorm() > 1e-12)) shape.b = shape.a; // 1 um: one over its square in float
+  const PlainCone c = round_cone(shape);
   const std::array<double, 10> values = {
-      shape.a.x(),  shape.a.y(), shape.a.z(), d.x(), d.y(), d.z(), squared > 0.0 ? 1.0 / squared : 0.0,
-      shape.radius, taper,       lean};
+      c.a.x(), c.a.y(), c.a.z(), c.axis.x(), c.axis.y(), c.axis.z(), c.per_axis_squared, c.radius, c.taper, c.lean};
   for (std::size_t k = 0; k < values.size(); ++k) arrays_[k][i] = static_cast<float>(values[k]);
 }
 

@@ -1,5 +1,6 @@
 // The kernels against a twin in plain double, stage by stage, on every target that this processor runs.
 #include "cloth/woven/sheet.h"
+#include "proxies/distance/signed_distance.h"
 #include "tests/support/simd_targets.h"
 #include "tests/support/woven_cases.h"
 #include "tests/support/woven_twin.h"
@@ -345,7 +346,7 @@ TYPED_TEST(WovenKernels, ParticlesAgainstCapsulesAndSpheres) {
       const double rise = 0.002;
       both.for_tiles([&](int block, int first, int last) {
         const double expected = both.twin.contact_capsule(block, first, last, collider, rise, &expected_hits);
-        const T gap = both.kernel.contact_capsule(both.view, block, first, last, c, rounded<T>(rise), &hits);
+        const T gap = both.kernel.contact_capsule(both.view, {block, first, last}, c, rounded<T>(rise), &hits);
         if (block < garment.columns) {
           EXPECT_NEAR(static_cast<double>(gap), expected, Bound<T>::contact);
         }
@@ -381,7 +382,7 @@ TYPED_TEST(WovenKernels, ParticlesAgainstAPlane) {
       p.push_speed_step = static_cast<T>(plane.push_speed_step);
       both.for_tiles([&](int block, int first, int last) {
         const double expected = both.twin.contact_plane(block, first, last, plane, &expected_hits);
-        const T gap = both.kernel.contact_plane(both.view, block, first, last, p, &hits);
+        const T gap = both.kernel.contact_plane(both.view, {block, first, last}, p, &hits);
         if (block < garment.columns) {
           EXPECT_NEAR(static_cast<double>(gap), expected, Bound<T>::contact);
         }
@@ -413,7 +414,7 @@ TYPED_TEST(WovenKernels, EdgesAndFaces) {
         both.twin.contact_cells(block, first, last, collider, high, &expected_hits);
         const bool is_copied = needs_halo(both.view, block);
         if (is_copied) both.kernel.fetch_halo(both.view);
-        both.kernel.contact_cells(both.view, block, first, last, c, features, &hits);
+        both.kernel.contact_cells(both.view, {block, first, last}, c, features, &hits);
         if (is_copied) both.kernel.return_halo(both.view);
       });
       worst.add(both.worst_x());

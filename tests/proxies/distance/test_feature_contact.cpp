@@ -1,8 +1,8 @@
 // Edges and triangles against capsules: the closed forms against a search that knows only that distance is convex.
 #include "proxies/distance/feature_contact.h"
 
-#include "proxies/distance/signed_distance.h"
 #include "tests/support/collider_scenes.h"
+#include "tests/support/nearest_search.h"
 
 #include <algorithm>
 #include <array>
@@ -14,39 +14,25 @@ using namespace tutu;
 using namespace tutu::proxies;
 using tutu::test::random_point;
 using tutu::test::random_taper;
+using tutu::test::search_edge;
+using tutu::test::search_triangle;
 
 namespace {
 
-/// The least value of a convex function on [0, top].
-template <class F> double least(double top, const F& f) {
-  double low = 0.0, high = top;
+/// The least value of a convex function on [0, 1].
+template <class F> double least(const F& f) {
+  double low = 0.0, high = 1.0;
   for (int i = 0; i < 60; ++i) {
     const double third = (high - low) / 3.0, left = low + third, right = high - third;
     if (f(left) < f(right)) high = right;
     else low = left;
   }
-  return std::min({f(0.0), f(0.5 * (low + high)), f(top)});
+  return std::min({f(0.0), f(0.5 * (low + high)), f(1.0)});
 }
 
-double searched_distance(const std::array<Vec3, 3>& p, const Capsule& capsule) {
-  const Vec3 e1 = p[1] - p[0], e2 = p[2] - p[0];
-  return least(1.0, [&](double t) {
-    const Vec3 on_axis = (1 - t) * capsule.a + t * capsule.b;
-    const double squared = least(1.0, [&](double w1) {
-      const Vec3 rest = on_axis - p[0] - w1 * e1;
-      const double w2 = e2.squaredNorm() > 0 ? std::clamp(rest.dot(e2) / e2.squaredNorm(), 0.0, 1.0 - w1) : 0.0;
-      return (rest - w2 * e2).squaredNorm();
-    });
-    return std::sqrt(squared) - capsule.radius_at(t);
-  });
-}
-
-double searched_distance(const Vec3& p, const Vec3& q, const Capsule& capsule) {
-  return least(1.0, [&](double s) {
-    const Vec3 cloth = (1 - s) * p + s * q;
-    return least(1.0,
-                 [&](double t) { return (cloth - (1 - t) * capsule.a - t * capsule.b).norm() - capsule.radius_at(t); });
-  });
+/// By values alone: where an edge lies along the axis no direction from it tells anything.
+double least_distance_by_value(const Vec3& p, const Vec3& q, const Capsule& capsule) {
+  return least([&](double s) { return test::search_point((1 - s) * p + s * q, capsule).distance; });
 }
 
 /// What FeatureContact promises, whatever the case.
@@ -85,7 +71,7 @@ TEST(EdgeContact, IsTheLeastDistanceOfAll) {
     if (i % 5 == 0) capsule.b = capsule.a, capsule.taper = 0.0;
     const Vec3 p = random_point(random, 0.3), q = random_point(random, 0.3);
     const FeatureContact contact = edge_contact(p, q, capsule, Vec3::Zero());
-    EXPECT_NEAR(contact.distance, searched_distance(p, q, capsule), 1e-9) << i;
+    EXPECT_NEAR(contact.distance, search_edge(p, q, capsule).distance, 1e-9) << i;
     expect_promises(contact, {p, q, Vec3::Zero()}, capsule);
     ++seen[contact.feature];
     inside += contact.distance < 0.0;
@@ -109,7 +95,7 @@ TEST(EdgeContact, NearlyParallelLosesNothing) {
     const Vec3 q = p + (i % 3 ? 1.0 : -0.7) * along + lean * random_point(random, 1.0);
     const FeatureContact contact = edge_contact(p, q, capsule, sideways);
     expect_promises(contact, {p, q, Vec3::Zero()}, capsule);
-    EXPECT_NEAR(contact.distance, searched_distance(p, q, capsule), 1e-9) << i;
+    EXPECT_NEAR(contact.distance, least_distance_by_value(p, q, capsule), 1e-9) << i;
   }
 }
 
@@ -128,7 +114,7 @@ TEST_P(TriangleDistance, IsTheLeastOfAll) {
     if (i % 5 == 0) capsule.b = capsule.a, capsule.taper = 0.0;
     const std::array<Vec3, 3> p = {random_point(random, 0.4), random_point(random, 0.4), random_point(random, 0.4)};
     const FeatureContact contact = triangle_contact(p[0], p[1], p[2], capsule, Vec3::Zero());
-    EXPECT_NEAR(contact.distance, searched_distance(p, capsule), 1e-7) << i;
+    EXPECT_NEAR(contact.distance, search_triangle(p, capsule).distance, 1e-7) << i;
     expect_promises(contact, p, capsule);
     ++seen[contact.feature];
     inside += contact.distance < 0.0;
@@ -174,7 +160,7 @@ TEST(TriangleContact, WithoutAreaItIsItsEdges) {
     }
     const FeatureContact contact = triangle_contact(p[0], p[1], p[2], capsule, Vec3::UnitY());
     expect_promises(contact, p, capsule);
-    EXPECT_NEAR(contact.distance, searched_distance(p, capsule), 1e-7) << i;
+    EXPECT_NEAR(contact.distance, search_triangle(p, capsule).distance, 1e-7) << i;
   }
 }
 

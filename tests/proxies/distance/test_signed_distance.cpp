@@ -1,19 +1,20 @@
 // The closed forms against definitions: dense sampling of the axis, analytic cases, and the convention itself.
 #include "proxies/distance/signed_distance.h"
 
+#include "proxies/distance/capsule_union.h"
+#include "tests/support/collider_scenes.h"
+#include "tests/support/nearest_search.h"
+
 #include <gtest/gtest.h>
 #include <limits>
 #include <random>
 
 using namespace tutu;
 using namespace tutu::proxies;
+using tutu::test::random_point;
+using tutu::test::search_point;
 
 namespace {
-
-Vec3 random_point(std::mt19937_64& random, double extent) {
-  std::uniform_real_distribution<double> uniform(-extent, extent);
-  return {uniform(random), uniform(random), uniform(random)};
-}
 
 /// The convention of proxies/contact.h, relative to the sizes at hand.
 void expect_convention(const Vec3& point, const Contact& contact) {
@@ -45,7 +46,7 @@ TEST(SignedDistance, CapsuleMatchesDenseSampling) {
     EXPECT_LE(contact.distance, sampled + 1e-15);
     EXPECT_GE(contact.distance, sampled - 0.5 * (capsule.b - capsule.a).norm() / 2000);
     expect_convention(point, contact);
-    EXPECT_NEAR(signed_distance(contact.closest, capsule).distance, 0.0, 1e-14);
+    EXPECT_NEAR(search_point(contact.closest, capsule).distance, 0.0, 1e-14);
     inside += contact.distance < 0.0;
   }
   EXPECT_GT(inside, 0.3 * k_cases);
@@ -66,7 +67,7 @@ TEST(SignedDistance, ConeMatchesDenseSamplingAndItsNormalLeans) {
     EXPECT_LE(contact.distance, sampled + 1e-15);
     EXPECT_GE(contact.distance, sampled - axis.norm() / 2000);
     expect_convention(point, contact);
-    EXPECT_NEAR(signed_distance(contact.closest, capsule).distance, 0.0, 1e-14);
+    EXPECT_NEAR(search_point(contact.closest, capsule).distance, 0.0, 1e-14);
     inside += contact.distance < 0.0;
     if (axis.norm() <= std::abs(capsule.taper)) {
       ++swallowed;
@@ -75,13 +76,14 @@ TEST(SignedDistance, ConeMatchesDenseSamplingAndItsNormalLeans) {
       EXPECT_NEAR(contact.distance, (point - centre).norm() - capsule.widest(), 1e-14);
       continue;
     }
-    const double t = nearest_on_axis(point, capsule);
+    const double t = search_point(point, capsule).t;
+    EXPECT_NEAR(nearest_on_axis(point, capsule), t, 1e-12);
     if (t <= 0.0 || t >= 1.0) continue;
     ++beside;
     EXPECT_NEAR(contact.normal.dot(axis), -capsule.taper, 1e-12);
     const Vec3 on_axis = capsule.a + 0.4 * axis;
     EXPECT_NEAR(normal_on_axis(capsule).dot(axis), -capsule.taper, 1e-12);
-    EXPECT_NEAR(signed_distance(on_axis, capsule).distance, -capsule.radius_at(0.4), 1e-12);
+    EXPECT_NEAR(signed_distance(on_axis, capsule).distance, search_point(on_axis, capsule).distance, 1e-12);
   }
   EXPECT_GT(inside, 0.3 * k_cases);
   EXPECT_LT(inside, 0.7 * k_cases);
@@ -176,8 +178,31 @@ TEST(SignedDistance, FarAway) {
     const Vec3 point = random_point(random, 1e6);
     const Contact contact = signed_distance(point, capsule);
     expect_convention(point, contact);
-    EXPECT_NEAR(signed_distance(contact.closest, capsule).distance, 0.0, 1e-12);
+    EXPECT_NEAR(search_point(contact.closest, capsule).distance, 0.0, 1e-9); // of 1e6
   }
+}
+
+TEST(CapsuleUnion, IsTheLeastOfAll) {
+  std::mt19937_64 random(8);
+  int inside = 0;
+  constexpr int k_cases = 1000;
+  for (int i = 0; i < k_cases; ++i) {
+    const test::ColliderScene scene = test::random_scene(random, 30, 0, 0.0);
+    CapsuleUnion solid;
+    solid.assign(scene.start);
+    const Vec3 point = random_point(random, 0.3);
+    double least = std::numeric_limits<double>::infinity(), least_but_last = least;
+    for (const Capsule& capsule : scene.start) {
+      least_but_last = least;
+      least = std::min(least, search_point(point, capsule).distance);
+    }
+    EXPECT_NEAR(solid.distance(point), least, 1e-14);
+    EXPECT_NEAR(solid.distance_without(point, 29), least_but_last, 1e-14);
+    EXPECT_NEAR(search_point(point, scene.start[solid.nearest(point).capsule]).distance, least, 1e-14);
+    inside += least < 0.0;
+  }
+  EXPECT_GT(inside, 0.3 * k_cases);
+  EXPECT_LT(inside, 0.7 * k_cases);
 }
 
 TEST(SignedDistance, Plane) {

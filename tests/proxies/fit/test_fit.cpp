@@ -4,6 +4,7 @@
 #include "proxies/proxy_file.h"
 #include "rig/io/file_io.h"
 #include "rig/strong_poses.h"
+#include "tests/support/nearest_search.h"
 #include "tests/support/paths.h"
 
 #include <cmath>
@@ -336,7 +337,7 @@ TEST(Fit, TheNearestShapeIsThatOfAllPairs) {
                      static_cast<double>(points.blocks.z[i]));
     std::vector<double> of_unit(units.size(), 1e9);
     for (int s = 0; s < shapes.count; ++s) {
-      const double d = signed_distance(point, shapes.capsules[shapes.at(pose, s)]).distance;
+      const double d = test::search_point(point, shapes.capsules[shapes.at(pose, s)], 30).distance;
       of_unit[shapes.unit[s]] = std::min(of_unit[shapes.unit[s]], d);
     }
     std::sort(of_unit.begin(), of_unit.end());

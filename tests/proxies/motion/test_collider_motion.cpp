@@ -1,8 +1,8 @@
 // How colliders move within a frame, against plain trigonometry, dense sampling and exact rigid motions.
 #include "proxies/motion/collider_motion.h"
 
-#include "proxies/distance/signed_distance.h"
 #include "tests/support/collider_scenes.h"
+#include "tests/support/nearest_search.h"
 
 #include <gtest/gtest.h>
 #include <limits>
@@ -10,6 +10,7 @@
 using namespace tutu;
 using namespace tutu::proxies;
 using tutu::test::random_point;
+using tutu::test::search_point;
 
 namespace {
 
@@ -135,7 +136,7 @@ TEST(SweptBounds, HoldEveryMomentAndAreTight) {
         EXPECT_TRUE((point.array() + now.radius <= box.max().array() + 1e-14).all()) << i << ' ' << s;
       }
       for (const double t : {0.0, 0.2, 0.5, 0.9, 1.0}) // the ball about each point of the axis
-        EXPECT_LE(signed_distance((1 - t) * now.a + t * now.b, cover).distance, -now.radius + 1e-14) << i << ' ' << s;
+        EXPECT_LE(search_point((1 - t) * now.a + t * now.b, cover, 30).distance, -now.radius + 1e-14) << i << ' ' << s;
       off = std::max(off, (now.a - ((1 - s) * start.a + s * end.a)).norm());
     }
     if (!gentle) continue;
@@ -167,7 +168,9 @@ TEST(SurfaceMotion, IsThatOfARigidBody) {
     Transform motion = turn_about(random_point(random, 0.5), spin);
     motion.translation += random_point(random, 0.05);
     const Capsule now = moved(before, motion);
-    const Vec3 point = random_point(random, 1.0), on_surface = signed_distance(point, now).closest;
+    const Vec3 point = random_point(random, 1.0);
+    const test::Searched nearest = search_point(point, now);
+    const Vec3 on_surface = point - nearest.distance * nearest.normal;
     const Vec3 exact = on_surface - motion.inverse() * on_surface;
     EXPECT_LE((surface_motion(before, now, spin, point) - exact).norm(), 0.51 * now.radius * angle * angle + 1e-14)
         << i;

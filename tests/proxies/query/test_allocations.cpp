@@ -33,7 +33,7 @@ TEST(Allocations, NoneInTheFrameLoopOfAnyBackend) {
       found->colliders.reserve(901 * (test::k_body_colliders + 1)); // more than ever needed: growth is not at issue
     const long before = allocations;
     for (int i = 0; i < 100; ++i) frame(i % 2 ? 0.01 : -0.01);
-    EXPECT_EQ(allocations - before, 0) << query->name();
+    EXPECT_EQ(allocations - before, 0) << k_backend_names[static_cast<std::size_t>(backend)];
     EXPECT_TRUE(std::isfinite(sum));
   }
 }

@@ -1,11 +1,11 @@
 // Proxies against bodies whose shape is known, and bounds against denser samples.
 #include "proxies/distance/capsule_union.h"
-#include "proxies/distance/signed_distance.h"
 #include "proxies/distance/surface_cells.h"
 #include "proxies/validate/error_figures.h"
 #include "proxies/validate/validate.h"
 #include "tests/support/capsule_body.h"
 #include "tests/support/collider_scenes.h"
+#include "tests/support/nearest_search.h"
 
 #include <gmock/gmock.h>
 #include <random>
@@ -218,7 +218,9 @@ TEST(Validate, CellsCoverACapsulesSurfaceWithinTheirRadius) {
       for (const SurfaceCell& cell : cells) EXPECT_NEAR(solid.distance(surface.middle(cell)), 0.0, 1e-12);
       for (int round = 0; round < 500; ++round) { // a random point of the surface
         const Vec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized();
-        const Vec3 p = signed_distance(capsule.a + 2.0 * length * direction + 0.1 * direction, capsule).closest;
+        const Vec3 from = capsule.a + 2.0 * length * direction + 0.1 * direction;
+        const test::Searched nearest = test::search_point(from, capsule);
+        const Vec3 p = from - nearest.distance * nearest.normal;
         EXPECT_NEAR(solid.distance(p), 0.0, 1e-12);
         const bool covered = std::any_of(cells.begin(), cells.end(), [&](const SurfaceCell& cell) {
           return (surface.middle(cell) - p).norm() <= surface.radius(cell) + 1e-12;
