@@ -13,6 +13,7 @@
 
 namespace tutu::fuzz {
 
+void fuzz_answer(std::string_view input);
 void fuzz_autosave(std::string_view input);
 void fuzz_bvh(std::string_view input);
 void fuzz_clip(std::string_view input);

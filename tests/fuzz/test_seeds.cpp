@@ -19,12 +19,19 @@ struct Target {
 };
 
 const std::vector<Target> k_targets = {
-    {"autosave", fuzz_autosave}, {"bvh", fuzz_bvh},
-    {"clip", fuzz_clip},         {"drape", fuzz_drape},
-    {"garment", fuzz_garment},   {"joint_limits", fuzz_joint_limits},
-    {"proxies", fuzz_proxies},   {"reference", fuzz_reference},
-    {"results", fuzz_results},   {"scene", fuzz_scene},
-    {"settings", fuzz_settings}, {"three_texts", fuzz_three_texts},
+    {"answer", fuzz_answer},
+    {"autosave", fuzz_autosave},
+    {"bvh", fuzz_bvh},
+    {"clip", fuzz_clip},
+    {"drape", fuzz_drape},
+    {"garment", fuzz_garment},
+    {"joint_limits", fuzz_joint_limits},
+    {"proxies", fuzz_proxies},
+    {"reference", fuzz_reference},
+    {"results", fuzz_results},
+    {"scene", fuzz_scene},
+    {"settings", fuzz_settings},
+    {"three_texts", fuzz_three_texts},
 };
 
 /// Of one target, in the order of their names.
