@@ -82,8 +82,12 @@ std::vector<test::WovenCase> held_cases(ContactFeatures features) {
   // Cells of 5 mm, pinned by chance inside the limbs: next to a pin no edge can be out and whole.
   if (features == ContactFeatures::triangles)
     std::erase_if(cases, [](const test::WovenCase& one) { return one.name == "grid, wide, without bend, pinned"; });
-  for (test::WovenCase& ring : test::uneven_rings()) // the limbs tear small cells that may shear, of 128 columns too
-    if (ring.garment.columns < 100 || ring.garment.fabric.shear > 0.0) cases.push_back(std::move(ring));
+  // The limbs tear small cells that may shear, of 128 columns too. (With triangles the twin searches long: few
+  // columns.)
+  const int most = features == ContactFeatures::triangles ? 17 : 127;
+  for (test::WovenCase& ring : test::uneven_rings())
+    if (ring.garment.columns <= most && (ring.garment.columns < 100 || ring.garment.fabric.shear > 0.0))
+      cases.push_back(std::move(ring));
   for (test::WovenCase& one : cases)
     if (one.garment.pins.empty()) test::pin_first_row(one.garment);
   return cases;
@@ -131,9 +135,9 @@ void compare_in_double(ContactFeatures features) {
         ASSERT_LT(error, 1e-9) << "frame " << frame << ", " << passes << " passes";
       }
       all_contacts += contacts;
-      // A corner that was put on the surface is found there again or not, as rounding has it.
-      EXPECT_NEAR(static_cast<double>(solver->contact_counts().contacts), static_cast<double>(contacts),
-                  features == ContactFeatures::particles ? 0.0 : 10.0 + 0.01 * static_cast<double>(contacts));
+      // What was put on the surface is found there again or not, as rounding has it.
+      const std::int64_t graze = features == ContactFeatures::particles ? 0 : twin.grazing;
+      EXPECT_LE(std::abs(solver->contact_counts().contacts - contacts), graze);
     }
   }
   EXPECT_GT(all_contacts, 10000);

@@ -94,7 +94,7 @@ TEST(BenchStability, OptionsOfAnotherSceneAreRefused) {
   for (const std::vector<std::string>& arguments : {std::vector<std::string>{"bench", "hang", "--n", "30"},
                                                     {"bench", "hang", "--still"},
                                                     {"bench", "dancer-skirt", "--runs", "3"},
-                                                    {"bench", "dancer-skirt", "--fixed-substeps"}}) {
+                                                    {"bench", "dancer-skirt", "--no-adaptive-substeps"}}) {
     const test::Outcome outcome = test::run_program(arguments);
     EXPECT_EQ(outcome.status, 2) << outcome.output;
     EXPECT_THAT(outcome.output, HasSubstr("only"));
