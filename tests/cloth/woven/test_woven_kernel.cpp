@@ -406,7 +406,7 @@ TYPED_TEST(WovenKernels, EdgesAndFaces) {
     std::mt19937_64 random(15);
     std::int64_t hits = 0, expected_hits = 0;
     bool high = false;
-    for (const test::TwinCollider& collider : colliders_near(both.twin.x, random, 25)) {
+    for (const test::TwinCollider& collider : colliders_near(both.twin.x, random, 10)) {
       high = !high;
       const WovenCollider<T> c = as_kernel_wants<T>(collider, both.sheet.origin());
       const CellFeatures<T> features = {T(10), true, high}; // no cell is so large as to be passed over
