@@ -146,7 +146,7 @@ void compare_in_double(ContactFeatures features) {
 TEST(WovenSheets, ParticlesInDoubleMeetWhatTheTwinsMeet_slow) { compare_in_double(ContactFeatures::particles); }
 TEST(WovenSheets, TrianglesInDoubleMeetWhatTheTwinsMeet_slow) { compare_in_double(ContactFeatures::triangles); }
 
-TEST_P(WovenRuns, InFloatStayNearTheTwinForAFrame) {
+TEST_P(WovenRuns, InFloatStayNearTheTwinForAFrame_slow) {
   constexpr int k_frames = 6, k_substeps = 8;
   double most = 0.0;
   for (const test::WovenCase& one : held_cases(GetParam())) {
