@@ -18,7 +18,6 @@ enum class ContactFeatures {
   triangles  ///< with their edges
 };
 inline constexpr std::array<std::string_view, 3> k_contact_features_names = {"auto", "particles", "triangles"};
-ContactFeatures contact_features_named(std::string_view name); ///< like solver_named
 
 struct SolverOptions {
   SolverKind solver = SolverKind::xpbd;
@@ -34,6 +33,5 @@ struct SolverOptions {
 /// As in scene files and on the command line, in the order of SolverKind.
 inline constexpr std::array<std::string_view, 2> k_solver_names = {"mass_spring", "xpbd"};
 std::string_view name_of(SolverKind kind);
-SolverKind solver_named(std::string_view name); ///< one of k_solver_names; std::invalid_argument for any other
 
 } // namespace tutu::cloth
