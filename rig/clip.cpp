@@ -45,15 +45,6 @@ Transform blended(const Transform& from, const Transform& to, const Clip::Veloci
   return result;
 }
 
-/// The time of the clip itself that `time` means: inside the keys, before the first or behind the last.
-double time_in_clip(const Clip& clip, double time) {
-  const double first = clip.times.front(), last = clip.times.back();
-  if (clip.extrapolation == Extrapolation::clamp || (time >= first && time <= last)) return time;
-  double offset = std::fmod(time - first, last - first); // exact; has the sign of time - first
-  if (offset < 0.0) offset += last - first;
-  return first + offset;
-}
-
 } // namespace
 
 void check(const RawClip& raw) {
@@ -113,9 +104,17 @@ Clip build_clip(const RawClip& raw, const Skeleton& skeleton) {
   return clip;
 }
 
+double wrapped(double time, double start, double end) {
+  if (!(end > start) || (time >= start && time <= end)) return end > start ? time : start;
+  double offset = std::fmod(time - start, end - start); // exact; has the sign of time - start
+  if (offset < 0.0) offset += end - start;
+  return start + offset;
+}
+
 void sample(const Clip& clip, double time, std::span<Transform> local) {
   assert(local.size() == static_cast<std::size_t>(clip.joint_count));
-  const double t = time_in_clip(clip, time);
+  const double t =
+      clip.extrapolation == Extrapolation::loop ? wrapped(time, clip.times.front(), clip.times.back()) : time;
   const auto after = std::upper_bound(clip.times.begin(), clip.times.end(), t);
   // NaN compares as behind every key; it is held at the first one, as is what lies before it.
   const auto held = [&](int k) { std::ranges::copy(clip.key(k), local.begin()); };

@@ -19,6 +19,9 @@ enum class Extrapolation {
   clamp ///< the first or the last key is held
 };
 
+/// The time between `start` and `end` that `time` means on a line that repeats; both ends are themselves. All s.
+double wrapped(double time, double start, double end);
+
 /// What lies between two keys.
 enum class Interpolation {
   nlerp, ///< translations LERP, rotations nlerp along the shorter arc; velocities jump at keys

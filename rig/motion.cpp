@@ -1,0 +1,41 @@
+#include "rig/motion.h"
+
+namespace tutu::rig {
+namespace {
+
+double start_of(const Clip& clip) { return clip.times.empty() ? 0.0 : clip.times.front(); }
+double start_of(const ChannelClip& clip) { return clip.start; }
+double duration_of(const Clip& clip) { return clip.times.empty() ? 0.0 : clip.duration(); }
+double duration_of(const ChannelClip& clip) { return clip.duration(); }
+
+} // namespace
+
+const std::string& Motion::name() const {
+  return std::visit([](const auto& clip) -> const std::string& { return clip.name; }, *this);
+}
+Extrapolation Motion::extrapolation() const {
+  return std::visit([](const auto& clip) { return clip.extrapolation; }, *this);
+}
+double Motion::start() const {
+  return std::visit([](const auto& clip) { return start_of(clip); }, *this);
+}
+double Motion::duration() const {
+  return std::visit([](const auto& clip) { return duration_of(clip); }, *this);
+}
+
+void sample(const Motion& motion, double time, std::span<Transform> local) {
+  std::visit([&](const auto& clip) { sample(clip, time, local); }, motion);
+}
+
+void pose_at(const Motion& motion, const Skeleton& skeleton, double time, std::span<Transform> local,
+             std::span<Transform> model) {
+  sample(motion, motion.start() + time, local);
+  model_from_local(skeleton, local, model);
+}
+
+void set_interpolation(Motion& motion, const Skeleton& skeleton, Interpolation interpolation) {
+  if (const auto* channels = std::get_if<ChannelClip>(&motion)) motion = key_poses(*channels, skeleton);
+  set_interpolation(std::get<Clip>(motion), interpolation);
+}
+
+} // namespace tutu::rig
