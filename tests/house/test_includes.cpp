@@ -23,6 +23,7 @@ const std::vector<std::vector<std::string>> k_rows = {
     {"rig"},
     {"rig/io"},
     {"rig/import/detail", "rig/mannequin/detail"},
+    {"rig/import/gltf", "rig/import/collada", "rig/import/fbx"},
     {"rig/import", "rig/mannequin"},
     {"proxies/detail"},
     {"proxies"},
