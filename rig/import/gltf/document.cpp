@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 16> k_fine = {"KHR_mesh_quantization",
                                                      "MSFT_texture_dds",
                                                      "KHR_lights_punctual",
                                                      "EXT_lights_*",
-                                                     "KHR_techniques_webgl",
+                                                     "KHR_technique*",
                                                      "KHR_xmp*",
                                                      "VRM",
                                                      "VRMC_*",
@@ -139,7 +139,8 @@ std::size_t GltfDocument::target_index(const GltfValue& reference, std::string_v
 }
 
 GltfValue GltfDocument::target(const GltfValue& reference, std::string_view list) const {
-  return root().at(list).item(target_index(reference, list));
+  const std::size_t index = target_index(reference, list);
+  return root().at(list).item(index);
 }
 
 } // namespace tutu::rig::import_detail

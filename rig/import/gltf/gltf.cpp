@@ -3,7 +3,30 @@
 #include "rig/import/gltf/animations.h"
 #include "rig/import/gltf/meshes.h"
 
+#include <set>
+
 namespace tutu::rig::import_detail {
+namespace {
+
+/// Textures are never opened.
+void note_outside_textures(const GltfDocument& document, FileScene& scene) {
+  constexpr std::size_t k_most_named = 6;
+  const Reach reach(document.path());
+  std::set<std::string> outside;
+  for (const GltfValue& image : document.root().items("images"))
+    if (const std::string uri = image.text_or("uri", ""); !uri.empty() && !uri.starts_with("data:"))
+      if (const std::string name = decode_percent(uri); !reach.holds_name(name)) outside.insert(name);
+  if (outside.empty()) return;
+  std::string note = outside.size() == 1 ? "1 texture" : std::to_string(outside.size()) + " textures";
+  note += " outside of the file's folder not opened:";
+  std::size_t named = 0;
+  for (const std::string& name : outside)
+    if (++named <= k_most_named) note += (named == 1 ? " " : ", ") + name;
+  if (named > k_most_named) note += " and " + std::to_string(named - k_most_named) + " more";
+  scene.notes.push_back(std::move(note));
+}
+
+} // namespace
 
 FileScene read_gltf(const std::filesystem::path& file) {
   const GltfDocument document(file);
@@ -24,6 +47,7 @@ FileScene read_gltf(const std::filesystem::path& file) {
   for (const std::size_t node : nodes.drawn) meshes.draw(from[node], nodes.node_of[node]);
   read_animations(accessors, nodes, rotations, scene);
   rotations.note(scene);
+  note_outside_textures(document, scene);
   return scene;
 }
 
