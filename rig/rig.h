@@ -1,8 +1,9 @@
 // rig: joints move.
 //
-//   file --import_character--> Skeleton + Mesh + Skin (+ RawClips)
+//   file --import_character--> Skeleton + Mesh + Skin (+ ChannelClips)
 //   BVH file --read_bvh--> its own Skeleton + Clip --retarget--> Clip
-//   RawClip --build_clip--> Clip --pose_at--> model_from_joint
+//   RawClip --build_clip--> Clip
+//   Motion (a Clip: key poses, or a ChannelClip: a file's own curves) --pose_at--> model_from_joint
 //   local pose --drag_joint, solve_limb, solve_chain--> local pose
 //   model_from_joint --skinning_palette--> palette --skin_vertices--> the posed mesh (only when something asks for it)
 //
@@ -23,6 +24,8 @@
 
 // The rest.
 #include "rig/body_regions.h"        // IWYU pragma: export
+#include "rig/channel_clip.h"        // IWYU pragma: export
+#include "rig/curve.h"               // IWYU pragma: export
 #include "rig/drag.h"                // IWYU pragma: export
 #include "rig/flight.h"              // IWYU pragma: export
 #include "rig/ik.h"                  // IWYU pragma: export
@@ -35,6 +38,7 @@
 #include "rig/mannequin/mannequin.h" // IWYU pragma: export
 #include "rig/math.h"                // IWYU pragma: export
 #include "rig/mesh.h"                // IWYU pragma: export
+#include "rig/motion.h"              // IWYU pragma: export
 #include "rig/skeleton.h"            // IWYU pragma: export
 #include "rig/skin.h"                // IWYU pragma: export
 #include "rig/strong_poses.h"        // IWYU pragma: export

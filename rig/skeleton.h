@@ -13,7 +13,8 @@ namespace tutu::rig {
 
 inline constexpr int k_no_parent = -1;
 
-/// A tree of joints in flat arrays, parent before child. Immutable once built; a pose is kept apart: spans of transforms.
+/// A tree of joints in flat arrays, parent before child. Immutable once built; a pose is kept apart: spans of
+/// transforms.
 struct Skeleton {
   std::vector<std::string> names;    ///< unique
   std::vector<int> parents;          ///< index of the parent joint, smaller than the child's; k_no_parent for roots

@@ -6,9 +6,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <array>
-#include <assimp/material.h>
-#include <assimp/mesh.h>
-#include <assimp/scene.h>
 #include <cmath>
 #include <cstring>
 #include <numeric>
@@ -36,9 +33,9 @@ struct Vertex {
 /// Adds surfaces to the character one after the other.
 class MeshBuilder {
 public:
-  MeshBuilder(const Source& source, const std::vector<Node>& nodes, const Conversion& conversion,
-              const ImportOptions& options, Character& character, ImportReport& report)
-      : source_(source), nodes_(nodes), conversion_(conversion), rest_(rest_model(character.skeleton)),
+  MeshBuilder(const std::vector<Node>& nodes, const Conversion& conversion, const ImportOptions& options,
+              Character& character, ImportReport& report)
+      : file_(character.file), nodes_(nodes), conversion_(conversion), rest_(rest_model(character.skeleton)),
         mesh_(character.mesh), skin_(character.skin), report_(report) {
     skin_.influences = options.max_influences;
   }
@@ -48,11 +45,11 @@ public:
     const std::vector<int> slots = slots_of(surface, model_from_vertex);
     const std::vector<Vertex> vertices = vertices_of(surface, model_from_vertex, slots);
     append(surface, model_from_vertex, vertices);
-    report_.file_vertices += static_cast<int>(surface.mesh->mNumVertices);
+    report_.file_vertices += static_cast<int>(surface.mesh->positions.size());
   }
 
   void finish() {
-    if (mesh_.triangles.empty()) throw InputError(source_.file, "", "no triangle", "a mesh with triangles");
+    if (mesh_.triangles.empty()) throw InputError(file_, "", "no triangle", "a mesh with triangles");
     note(unused_, "vertex", "not used by any triangle left out");
     note(degenerate_, "triangle", "without area (a corner twice) dropped");
     note(loose_, "point or line", "dropped");
@@ -89,7 +86,7 @@ private:
     const double determinant = result.linear().determinant();
     const double size = result.linear().norm();
     if (!result.matrix().allFinite() || !(std::abs(determinant) > 1e-12 * size * size * size))
-      throw InputError(source_.file, "mesh " + surface.name, "a bind pose that flattens it",
+      throw InputError(file_, "mesh " + surface.mesh->name, "a bind pose that flattens it",
                        "matrices that can be inverted");
     if (determinant < 0.0) ++inside_out_;
     return result;
@@ -108,7 +105,7 @@ private:
       const Affine at_rest = model_from_joint(binding).inverse(Eigen::Isometry);
       if ((inverse_bind.matrix() - at_rest.matrix()).cwiseAbs().maxCoeff() <= k_bound_at_rest) inverse_bind = at_rest;
       if (!inverse_bind.matrix().allFinite())
-        throw InputError(source_.file, "mesh " + surface.name + ", joint " + nodes_[binding.node].name,
+        throw InputError(file_, "mesh " + surface.mesh->name + ", joint " + nodes_[binding.node].name,
                          "an inverse bind matrix out of all measure", "finite numbers");
       slots[b] = slot(nodes_[binding.node].joint, inverse_bind);
     }
@@ -121,7 +118,7 @@ private:
           (skin_.inverse_bind[s].matrix() - inverse_bind.matrix()).cwiseAbs().maxCoeff() <= k_same_bind)
         return s;
     if (skin_.slot_count() >= k_most_slots)
-      throw InputError(source_.file, "", "more than " + std::to_string(k_most_slots) + " bindings", "fewer");
+      throw InputError(file_, "", "more than " + std::to_string(k_most_slots) + " bindings", "fewer");
     skin_.slot_joint.push_back(joint);
     skin_.inverse_bind.push_back(inverse_bind);
     return skin_.slot_count() - 1;
@@ -129,15 +126,13 @@ private:
 
   std::vector<Vertex> vertices_of(const Surface& surface, const Affine& model_from_vertex,
                                   const std::vector<int>& slots) {
-    std::vector<Vertex> vertices(surface.mesh->mNumVertices);
+    std::vector<Vertex> vertices(surface.mesh->positions.size());
     std::vector<std::pair<int, double>> shares; // slot, weight
     for (std::size_t v = 0; v < vertices.size(); ++v) {
-      const aiVector3D& p = surface.mesh->mVertices[v];
-      const Vec3 position =
-          model_from_vertex * Vec3(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+      const Vec3 position = model_from_vertex * surface.mesh->positions[v].cast<double>();
       vertices[v].position = position.cast<float>() + Vec3f::Zero(); // -0 becomes 0
       if (!is_in_bounds(position))
-        throw InputError(source_.file, "mesh " + surface.name,
+        throw InputError(file_, "mesh " + surface.mesh->name,
                          "a position out of all measure of vertex " + std::to_string(v),
                          "finite numbers within +-1e9 m");
       shares.clear();
@@ -188,17 +183,12 @@ private:
   }
 
   void append(const Surface& surface, const Affine& model_from_vertex, const std::vector<Vertex>& vertices) {
-    const aiMesh& mesh = *surface.mesh;
+    const FileMesh& mesh = *surface.mesh;
     const std::vector<unsigned> welded = weld(vertices);
     const bool turn = model_from_vertex.linear().determinant() < 0.0;
     std::vector<Triangle> triangles, corners; // welded, and as in the file
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) {
-        ++loose_;
-        continue;
-      }
-      Triangle corner = {face.mIndices[0], face.mIndices[1], face.mIndices[2]};
+    loose_ += mesh.loose;
+    for (Triangle corner : mesh.triangles) {
       if (turn) std::swap(corner[1], corner[2]);
       const Triangle triangle = {welded[corner[0]], welded[corner[1]], welded[corner[2]]};
       if (triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0]) {
@@ -227,20 +217,20 @@ private:
         skin_.weights.push_back(vertices[v].weights[k]);
       }
     }
-    MeshPart part{surface.name, static_cast<std::uint32_t>(mesh_.triangles.size()),
-                  static_cast<std::uint32_t>(triangles.size()), colour_of(mesh)};
+    MeshPart part{mesh.name, static_cast<std::uint32_t>(mesh_.triangles.size()),
+                  static_cast<std::uint32_t>(triangles.size()), mesh.colour};
     for (const Triangle& t : triangles) mesh_.triangles.push_back({place[t[0]], place[t[1]], place[t[2]]});
     if (!triangles.empty()) mesh_.parts.push_back(std::move(part));
   }
 
   /// Normals of the file, put together over each welded vertex by corner angle; those of the triangles where the file
   /// has none.
-  static std::vector<Vec3f> smooth_normals(const aiMesh& mesh, const Affine& model_from_vertex,
+  static std::vector<Vec3f> smooth_normals(const FileMesh& mesh, const Affine& model_from_vertex,
                                            const std::vector<Vertex>& vertices, const std::vector<Triangle>& triangles,
                                            const std::vector<Triangle>& corners) {
     std::vector<Vec3f> positions(vertices.size());
     for (std::size_t v = 0; v < vertices.size(); ++v) positions[v] = vertices[v].position;
-    if (!mesh.mNormals) return angle_weighted_normals(positions, triangles);
+    if (mesh.normals.empty()) return angle_weighted_normals(positions, triangles);
     const Matrix3 cofactor = model_from_vertex.linear().inverse().transpose();
     std::vector<Vec3> sum(vertices.size(), Vec3::Zero());
     for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -248,9 +238,7 @@ private:
         const Vec3 here = positions[triangles[t][c]].cast<double>();
         const Vec3 a = positions[triangles[t][(c + 1) % 3]].cast<double>() - here;
         const Vec3 b = positions[triangles[t][(c + 2) % 3]].cast<double>() - here;
-        const aiVector3D& n = mesh.mNormals[corners[t][c]];
-        const Vec3 normal =
-            cofactor * Vec3(static_cast<double>(n.x), static_cast<double>(n.y), static_cast<double>(n.z));
+        const Vec3 normal = cofactor * mesh.normals[corners[t][c]].cast<double>();
         const double length = normal.norm();
         if (std::isfinite(length) && length > 0.0)
           sum[triangles[t][c]] += std::atan2(a.cross(b).norm(), a.dot(b)) / length * normal;
@@ -261,20 +249,7 @@ private:
     return normals;
   }
 
-  std::array<float, 3> colour_of(const aiMesh& mesh) const {
-    std::array<float, 3> colour = MeshPart{}.colour;
-    if (mesh.mMaterialIndex >= source_.scene->mNumMaterials) return colour;
-    const aiMaterial& material = *source_.scene->mMaterials[mesh.mMaterialIndex];
-    aiColor4D found;
-    if (aiGetMaterialColor(&material, AI_MATKEY_BASE_COLOR, &found) != aiReturn_SUCCESS &&
-        aiGetMaterialColor(&material, AI_MATKEY_COLOR_DIFFUSE, &found) != aiReturn_SUCCESS)
-      return colour;
-    if (std::isfinite(found.r) && std::isfinite(found.g) && std::isfinite(found.b))
-      colour = {std::clamp(found.r, 0.0f, 1.0f), std::clamp(found.g, 0.0f, 1.0f), std::clamp(found.b, 0.0f, 1.0f)};
-    return colour;
-  }
-
-  const Source& source_;
+  const std::string& file_;
   const std::vector<Node>& nodes_;
   const Conversion& conversion_;
   const std::vector<Transform> rest_;
@@ -286,10 +261,9 @@ private:
 
 } // namespace
 
-void build_mesh(const Source& source, const std::vector<Node>& nodes, const std::vector<Surface>& surfaces,
-                const Conversion& conversion, const ImportOptions& options, Character& character,
-                ImportReport& report) {
-  MeshBuilder builder(source, nodes, conversion, options, character, report);
+void build_mesh(const std::vector<Node>& nodes, const std::vector<Surface>& surfaces, const Conversion& conversion,
+                const ImportOptions& options, Character& character, ImportReport& report) {
+  MeshBuilder builder(nodes, conversion, options, character, report);
   for (const Surface& surface : surfaces) builder.add(surface);
   builder.finish();
 }

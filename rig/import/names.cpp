@@ -24,37 +24,25 @@ std::map<std::string, std::string> plain_names(const std::set<std::string>& name
 }
 
 /// Puts plain names in the place of the others; `name_of(item)` is where an item's name stands.
-template <typename Items, typename NameOf>
-std::map<std::string, std::string> clean(Items& items, std::vector<std::string>& cleaned, NameOf name_of) {
+template <typename Items, typename NameOf> void clean(Items& items, std::vector<std::string>& cleaned, NameOf name_of) {
   std::set<std::string> names;
   for (auto& item : items) names.insert(name_of(item));
-  std::map<std::string, std::string> plain = plain_names(names);
+  const std::map<std::string, std::string> plain = plain_names(names);
   for (auto& item : items)
     if (const auto found = plain.find(name_of(item)); found != plain.end()) name_of(item) = found->second;
   for (const auto& [before, after] : plain) cleaned.push_back(after);
-  return plain;
-}
-
-void rename_joints(RawClip& clip, const std::map<std::string, std::string>& plain) {
-  for (RawClip::Key& key : clip.keys)
-    for (const auto& [before, after] : plain)
-      if (auto joint = key.joints.extract(before)) {
-        joint.key() = after;
-        key.joints.insert(std::move(joint));
-      }
 }
 
 } // namespace
 
 void clean_names(Import& import) {
   std::vector<std::string> cleaned;
-  const auto joints = clean(
+  clean(
       import.character.skeleton.names, cleaned, [](std::string & name) -> auto& { return name; });
-  for (RawClip& clip : import.clips) rename_joints(clip, joints);
   clean(
       import.character.mesh.parts, cleaned, [](MeshPart & part) -> auto& { return part.name; });
   clean(
-      import.clips, cleaned, [](RawClip & clip) -> auto& { return clip.name; });
+      import.clips, cleaned, [](ChannelClip & clip) -> auto& { return clip.name; });
 
   ImportReport& report = import.report;
   report.format = plain_text(report.format);

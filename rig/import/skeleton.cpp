@@ -1,4 +1,4 @@
-// Which nodes are joints, which of them are one joint, and where they rest in metres.
+// Which nodes are joints, and which of them are one joint.
 #include "rig/error.h"
 #include "rig/import/detail/parts.h"
 #include "rig/import/import.h"
@@ -28,8 +28,8 @@ double extent(const std::vector<Node>& nodes, const std::vector<bool>& joint) {
   return box.isEmpty() ? 0.0 : box.diagonal().norm();
 }
 
-/// The nodes that bones name, and their twins: assimp tells names only, so a bone may mean any node of its name and
-/// place.
+/// The nodes that bones name, and their twins: where a format tells names only, a bone may mean any node of its name
+/// and place.
 std::vector<bool> bone_nodes(const std::vector<Node>& nodes, const std::vector<Surface>& surfaces) {
   std::vector<bool> bone(nodes.size(), false);
   for (const Surface& surface : surfaces)
@@ -56,7 +56,7 @@ std::vector<bool> below(const std::vector<Node>& nodes, std::vector<bool> flag) 
 
 /// Containers above the topmost bones that are joints all the same: those an animation moves, and the one that joins
 /// several topmost bones of different names with nothing but joints below it (the unskinned root of one skeleton).
-std::vector<bool> promoted_containers(const Source& source, const std::vector<Node>& nodes,
+std::vector<bool> promoted_containers(const FileScene& scene, const std::vector<Node>& nodes,
                                       const std::vector<bool>& bone) {
   const std::vector<bool> has_bone = below(nodes, bone);
   std::vector<bool> inside(nodes.size(), false), scenery(nodes.size(), false);
@@ -78,15 +78,15 @@ std::vector<bool> promoted_containers(const Source& source, const std::vector<No
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (inside[n] || !has_bone[n]) continue;
     const bool joins = nodes[n].parent >= 0 && branches[n] >= 2 && tops[n].size() >= 2 && !scenery[n];
-    promoted[n] = joins || is_moved(source, nodes[n]);
+    promoted[n] = joins || is_moved(scene, nodes, static_cast<int>(n));
   }
   return promoted;
 }
 
-std::vector<bool> joint_nodes(const Source& source, const std::vector<Node>& nodes,
+std::vector<bool> joint_nodes(const FileScene& scene, const std::vector<Node>& nodes,
                               const std::vector<Surface>& surfaces) {
   const std::vector<bool> bone = bone_nodes(nodes, surfaces), has_bone = below(nodes, bone);
-  std::vector<bool> joint = promoted_containers(source, nodes, bone);
+  std::vector<bool> joint = promoted_containers(scene, nodes, bone);
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const bool hangs = nodes[n].parent >= 0 && joint[nodes[n].parent];
     const bool aid = nodes[n].holds_mesh || nodes[n].is_aid;
@@ -139,6 +139,7 @@ public:
     if (!same.empty()) renamed_.push_back(joints_.names.back());
     joints_.parents.push_back(parent);
     joints_.nodes.push_back(n);
+    joints_.rest.push_back({node.split.rotation, node.global.translation()});
     same.push_back(node.joint);
   }
 
@@ -175,12 +176,12 @@ private:
 
 } // namespace
 
-Joints choose_joints(const Source& source, std::vector<Node>& nodes, const std::vector<Surface>& surfaces,
+Joints choose_joints(const FileScene& scene, std::vector<Node>& nodes, const std::vector<Surface>& surfaces,
                      ImportReport& report) {
-  const std::vector<bool> joint = joint_nodes(source, nodes, surfaces);
+  const std::vector<bool> joint = joint_nodes(scene, nodes, surfaces);
   const std::vector<int> order = by_hierarchy(nodes, joint, report.file_skeletons);
   if (order.size() > k_most_joints)
-    throw InputError(source.file, "", count_of(order.size(), "joint"), "at most " + std::to_string(k_most_joints));
+    throw InputError(scene.file, "", count_of(order.size(), "joint"), "at most " + std::to_string(k_most_joints));
   JointBuilder builder(nodes, order, k_same_place * extent(nodes, joint));
   std::vector<std::string> mirrored, stretched;
   for (const int n : order) {
@@ -198,24 +199,21 @@ Joints choose_joints(const Source& source, std::vector<Node>& nodes, const std::
   return builder.take(report.file_skeletons, report);
 }
 
-Skeleton build_skeleton(const Source& source, const std::vector<Node>& nodes, const Joints& joints,
-                        const Conversion& conversion) {
+Skeleton build_skeleton(const std::string& file, const Joints& joints, const Conversion& conversion) {
   Skeleton skeleton;
   skeleton.names = joints.names;
   skeleton.parents = joints.parents;
   std::vector<Transform> model;
-  for (const int n : joints.nodes)
-    model.push_back({(conversion.rotation * nodes[n].split.rotation).normalized(),
-                     conversion.rotation * (conversion.scale * nodes[n].global.translation())});
+  for (const Transform& rest : joints.rest) model.push_back(conversion * rest);
   skeleton.rest_local.resize(model.size());
   local_from_model(skeleton, model, skeleton.rest_local);
   for (std::size_t j = 0; j < model.size(); ++j) {
     skeleton.rest_local[j].rotation.normalize();
     if (!is_in_bounds(skeleton.rest_local[j].translation))
-      throw InputError(source.file, "joint " + skeleton.names[j], "a rest position out of all measure",
+      throw InputError(file, "joint " + skeleton.names[j], "a rest position out of all measure",
                        "finite numbers within +-1e9 m");
   }
-  skeleton.check(source.file);
+  skeleton.check(file);
   return skeleton;
 }
 

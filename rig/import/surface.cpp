@@ -5,17 +5,14 @@
 #include "rig/import/detail/parts.h"
 #include "rig/import/import.h"
 
-#include <assimp/mesh.h>
-#include <assimp/scene.h>
 #include <cstdio>
 #include <map>
 
 namespace tutu::rig {
 namespace {
 
-std::string place_of(const aiMesh& mesh, unsigned vertex) {
-  const std::string name = mesh.mName.C_Str();
-  return (name.empty() ? "" : "mesh " + name + ", ") + "vertex " + std::to_string(vertex);
+std::string place_of(const import_detail::FileMesh& mesh, unsigned vertex) {
+  return (mesh.name.empty() ? "" : "mesh " + mesh.name + ", ") + "vertex " + std::to_string(vertex);
 }
 
 std::string shown(const Vec3& p) {
@@ -24,7 +21,7 @@ std::string shown(const Vec3& p) {
   return text;
 }
 
-TriangleSurface surface_of(const import_detail::Source& source) {
+TriangleSurface surface_of(const import_detail::FileScene& scene) {
   TriangleSurface surface;
   std::map<std::array<double, 3>, std::uint32_t> corners;
   const auto corner = [&](const Vec3& p) {
@@ -34,29 +31,26 @@ TriangleSurface surface_of(const import_detail::Source& source) {
     if (is_new) surface.positions.push_back(p);
     return place->second;
   };
-  for (const import_detail::Node& node : import_detail::walk(source))
-    for (unsigned i = 0; i < node.source->mNumMeshes; ++i) {
-      if (node.source->mMeshes[i] >= source.scene->mNumMeshes) continue;
-      const aiMesh& mesh = *source.scene->mMeshes[node.source->mMeshes[i]];
-      for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-        if (mesh.mFaces[f].mNumIndices != 3) continue; // points and lines
-        Triangle triangle;
-        for (unsigned k = 0; k < 3; ++k) {
-          const unsigned vertex = mesh.mFaces[f].mIndices[k];
-          const aiVector3D& p = mesh.mVertices[vertex];
-          const Vec3 local(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
-          const Vec3 placed = node.global * local;
-          for (const Vec3& point : {local, placed})
-            if (!is_in_bounds(point))
-              throw InputError(source.file, place_of(mesh, vertex), "the point " + shown(point),
-                               "finite numbers within +-1e9");
-          triangle[k] = corner(placed);
-        }
-        if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
-          surface.triangles.push_back(triangle);
+  const std::vector<import_detail::Node> nodes = import_detail::walk(scene);
+  for (const import_detail::FileInstance& instance : scene.instances) {
+    const import_detail::FileMesh& mesh = scene.meshes[instance.mesh];
+    for (const Triangle& file_triangle : mesh.triangles) {
+      Triangle triangle;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = file_triangle[k];
+        const Vec3 local = mesh.positions[vertex].cast<double>();
+        const Vec3 placed = nodes[instance.node].global * local;
+        for (const Vec3& point : {local, placed})
+          if (!is_in_bounds(point))
+            throw InputError(scene.file, place_of(mesh, vertex), "the point " + shown(point),
+                             "finite numbers within +-1e9");
+        triangle[k] = corner(placed);
       }
+      if (triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0])
+        surface.triangles.push_back(triangle);
     }
-  if (surface.triangles.empty()) throw InputError(source.file, "", "no triangle", import_detail::k_expected_surface);
+  }
+  if (surface.triangles.empty()) throw InputError(scene.file, "", "no triangle", import_detail::k_expected_surface);
   return surface;
 }
 
@@ -67,7 +61,7 @@ TriangleSurface import_surface(const std::filesystem::path& file) {
   try {
     const Bounds bounds = bounds_for(check_acceptable(file, Purpose::surface));
     const std::string answer = isolated_answer(file.string(), bounds, k_expected_surface, [&](Packer& packer) {
-      TriangleSurface surface = surface_of(load(file, Purpose::surface));
+      TriangleSurface surface = surface_of(read_scene_of(file, Purpose::surface));
       pass(packer, surface);
     });
     return unpack_surface(answer, file.string());

@@ -3,25 +3,27 @@
 #include "rig/import/detail/parts.h"
 #include "rig/import/import.h"
 
-#include <assimp/mesh.h>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
-namespace tutu::rig::import_detail {
+namespace tutu::rig {
+using namespace import_detail;
 namespace {
 
-constexpr double k_least_height = 0.3, k_most_height = 3.0; ///< m: inside, the file's unit is believed
-constexpr double k_usual_height = 1.7;                      ///< m: a guessed unit comes nearest to it
-constexpr double k_smallest = 0.01, k_largest = 100.0;      ///< m: outside, it is no character
+constexpr double k_least_height = 0.3, k_most_height = 3.0; ///< m: of a person, or what dances like one
+constexpr double k_usual_height = 1.7;                      ///< m: a likely unit comes nearest to it
+constexpr double k_smallest = 0.05;                         ///< m: below, a body is in the wrong unit
 
 struct Unit {
+  const char* symbol;
   const char* name;
   double metres;
 };
-constexpr Unit k_units[] = {{"metres", 1.0},    {"centimetres", 0.01}, {"millimetres", 0.001},
-                            {"inches", 0.0254}, {"feet", 0.3048},      {"decimetres", 0.1}};
+constexpr Unit k_units[] = {{"m", "metres", 1.0},     {"cm", "centimetres", 0.01}, {"mm", "millimetres", 0.001},
+                            {"in", "inches", 0.0254}, {"ft", "feet", 0.3048},      {"dm", "decimetres", 0.1}};
 
 std::string number(double value) {
   char text[32];
@@ -29,16 +31,15 @@ std::string number(double value) {
   return text;
 }
 
-/// Bounds of the skinned rest pose in file space.
-Eigen::AlignedBox3d rest_bounds(const std::vector<Node>& nodes, const std::vector<Surface>& surfaces) {
+/// Bounds of the skinned body at rest, in file space.
+Eigen::AlignedBox3d rest_bounds(const std::vector<Node>& nodes, const Joints& joints,
+                                const std::vector<Surface>& surfaces) {
   Eigen::AlignedBox3d box;
   for (const Surface& surface : surfaces) {
     std::vector<Affine> palette;
-    for (const Binding& binding : surface.bindings)
-      palette.push_back(nodes[binding.node].global * binding.inverse_bind);
-    for (unsigned v = 0; v < surface.mesh->mNumVertices; ++v) {
-      const aiVector3D& p = surface.mesh->mVertices[v];
-      const Vec3 vertex(static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z));
+    for (const Binding& binding : surface.bindings) palette.push_back(carried_at_rest(nodes, joints, binding));
+    for (std::size_t v = 0; v < surface.mesh->positions.size(); ++v) {
+      const Vec3 vertex = surface.mesh->positions[v].cast<double>();
       Vec3 skinned = Vec3::Zero();
       for (int i = surface.first[v]; i < surface.first[v + 1]; ++i)
         skinned += surface.influences[i].weight * (palette[surface.influences[i].binding] * vertex);
@@ -48,23 +49,22 @@ Eigen::AlignedBox3d rest_bounds(const std::vector<Node>& nodes, const std::vecto
   return box;
 }
 
-std::optional<Vec3> joint_called(const std::vector<Node>& nodes, const Joints& joints,
-                                 std::initializer_list<const char*> parts) {
+std::optional<Vec3> joint_called(const Joints& joints, std::initializer_list<const char*> parts) {
   for (const char* part : parts)
     for (std::size_t j = 0; j < joints.names.size(); ++j) {
       std::string name(bare_joint_name(joints.names[j]));
       for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-      if (name.find(part) != std::string::npos) return nodes[joints.nodes[j]].global.translation();
+      if (name.find(part) != std::string::npos) return joints.rest[j].translation;
     }
   return std::nullopt;
 }
 
 /// For files without a word about their axes: from hips to head and from feet to hips, when joints say so. Both are
 /// asked, since the spine of an animal on four legs lies along Z in a file with Y up.
-char guess_up_axis(const std::vector<Node>& nodes, const Joints& joints, ImportReport& report) {
-  const auto hips = joint_called(nodes, joints, {"pelvis", "hips", "hip"});
-  const auto head = joint_called(nodes, joints, {"head", "neck"});
-  const auto foot = joint_called(nodes, joints, {"toe", "foot", "ankle", "leg"});
+char guess_up_axis(const Joints& joints, ImportReport& report) {
+  const auto hips = joint_called(joints, {"pelvis", "hips", "hip"});
+  const auto head = joint_called(joints, {"head", "neck"});
+  const auto foot = joint_called(joints, {"toe", "foot", "ankle", "leg"});
   if (!hips || !head || !foot) return 'Y';
   const auto stands_along_z = [](const Vec3& v) { return v.z() > 2.0 * std::abs(v.y()) && v.z() > std::abs(v.x()); };
   if (!stands_along_z(*head - *hips) || !stands_along_z(*hips - *foot)) return 'Y';
@@ -79,47 +79,81 @@ Quat rotation_to_y_up(char axis) {
   return Quat::Identity();
 }
 
+/// How near a height is to that of a person, by its logarithm; 0 is nearest.
+double unlikeliness(double height) { return std::abs(std::log(height / k_usual_height)); }
+
 const Unit& nearest_unit(double height) {
   const Unit* best = k_units;
   for (const Unit& unit : k_units)
-    if (std::abs(std::log(height * unit.metres / k_usual_height)) <
-        std::abs(std::log(height * best->metres / k_usual_height)) - 1e-12)
-      best = &unit;
+    if (unlikeliness(height * unit.metres) < unlikeliness(height * best->metres) - 1e-12) best = &unit;
   return *best;
+}
+
+/// By how much a height in metres is likely wrong: a unit was left out or applied twice.
+double likely_factor(double height) {
+  double best = 1.0;
+  for (const Unit& unit : k_units)
+    for (const double factor : {unit.metres, 1.0 / unit.metres})
+      if (unlikeliness(height * factor) < unlikeliness(height * best) - 1e-12) best = factor;
+  return best;
+}
+
+/// "100 times that, 1.75 m, is likelier"
+std::string proposal(double height) {
+  const double factor = likely_factor(height);
+  return number(factor) + " times that, " + number(factor * height) + " m, is likelier";
 }
 
 } // namespace
 
-Conversion choose_conversion(const Source& source, const std::vector<Node>& nodes, const Joints& joints,
-                             const std::vector<Surface>& surfaces, ImportReport& report) {
-  const char up = source.up_axis ? *source.up_axis : guess_up_axis(nodes, joints, report);
+std::optional<double> metres_in(std::string_view text) {
+  for (const Unit& unit : k_units)
+    if (text == unit.symbol || text == unit.name) return unit.metres;
+  double metres = 0.0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), metres);
+  if (failure != std::errc() || end != text.data() + text.size() || !(metres > 0.0 && metres <= k_largest_number))
+    return std::nullopt;
+  return metres;
+}
+
+namespace import_detail {
+
+Conversion choose_conversion(const FileScene& scene, const std::vector<Node>& nodes, const Joints& joints,
+                             const std::vector<Surface>& surfaces, const ImportOptions& options, ImportReport& report) {
+  const char up = scene.up_axis ? *scene.up_axis : guess_up_axis(joints, report);
   report.up_axis = up;
   Conversion conversion;
-  if (!source.already_applied) conversion.rotation = rotation_to_y_up(up);
+  if (!scene.already_applied) conversion.rotation = rotation_to_y_up(up);
 
-  const Eigen::AlignedBox3d box = rest_bounds(nodes, surfaces);
+  const Eigen::AlignedBox3d box = rest_bounds(nodes, joints, surfaces);
   const Vec3 tall = (conversion.rotation * box.diagonal()).cwiseAbs(); // a quarter turn: extents swap places
-  const double declared = source.metres_per_unit.value_or(1.0);
-  const double applied = source.already_applied ? declared : 1.0;
+  const double applied = scene.already_applied ? scene.metres_per_unit.value_or(1.0) : 1.0;
   const double height = tall.y() / applied; // in the file's units
   if (box.isEmpty() || !std::isfinite(height) || !(height > 0.0))
-    throw InputError(source.file, "", "a body without height", "a character that stands upright");
-  report.metres_per_unit = declared;
-  if (!(height * declared >= k_least_height && height * declared <= k_most_height)) {
+    throw InputError(scene.file, "", "a body without height", "a character that stands upright");
+
+  const std::optional<double> said = options.metres_per_unit ? options.metres_per_unit : scene.metres_per_unit;
+  if (options.height) {
+    report.metres_per_unit = *options.height / height;
+  } else if (said) {
+    report.metres_per_unit = *said;
+  } else if (!(height >= k_least_height && height <= k_most_height)) {
     const Unit& unit = nearest_unit(height);
     report.metres_per_unit = unit.metres;
-    report.notes.push_back("height " + number(height) + " read as " + unit.name +
-                           (source.metres_per_unit
-                                ? ", since the file's own unit would make it " + number(height * declared) + " m"
-                                : ""));
+    report.notes.push_back("no unit in the file: its height of " + number(height) + " read as " + unit.name);
   }
   report.height = height * report.metres_per_unit;
-  if (!(report.height >= k_smallest && report.height <= k_largest))
-    throw InputError(source.file, "",
-                     "a height of " + number(height) + " units, which is no character in any usual unit",
-                     "between 0.01 and 100 m");
+  if (!(report.height >= k_smallest))
+    throw InputError(scene.file, "", "a body " + number(report.height) + " m high; " + proposal(report.height),
+                     "at least " + number(k_smallest) +
+                         " m, or the height stated: --height, or \"height\" beside the character's file in the scene");
+  if (!options.height && !(report.height >= k_least_height && report.height <= k_most_height))
+    report.notes.push_back("the body is " + number(report.height) + " m high" + (said ? ", as its unit says" : "") +
+                           "; " + proposal(report.height) +
+                           ": state --height, or \"height\" beside the character's file in the scene");
   conversion.scale = report.metres_per_unit / applied;
   return conversion;
 }
 
-} // namespace tutu::rig::import_detail
+} // namespace import_detail
+} // namespace tutu::rig

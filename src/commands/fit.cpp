@@ -14,6 +14,7 @@
 #include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
+#include "src/options/import_options.h"
 #include "src/options/scene_options.h"
 #include "src/run/garment_reach.h"
 #include "src/scene/load.h"
@@ -44,7 +45,7 @@ struct Options {
   std::optional<double> max_error_mm, cover_mm;
   double under_weight = 1.0;
   bool no_symmetry = false;
-  int influences = 4;
+  rig::ImportOptions import;
 };
 
 Poses poses_of(const rig::Clip& clip, const rig::Skeleton& skeleton) {
@@ -187,7 +188,7 @@ int run(const Options& options) {
   if (options.motion) inputs.emplace_back(*options.motion);
   if (options.garment) inputs.emplace_back(*options.garment);
   check_outputs({{"--out", options.out}, {"--curve", options.curve}, {"--json", options.json}}, inputs);
-  const rig::Import import = rig::import_character(options.character, {options.influences});
+  const rig::Import import = rig::import_character(options.character, options.import);
   const rig::Character& character = import.character;
   std::string motion;
   const Poses poses = poses_for(options, import, motion);
@@ -279,7 +280,7 @@ int run(const Options& options) {
 void add_fit(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("fit", "Make proxies for a character and say how far they are from its skin");
   auto options = std::make_shared<Options>();
-  command->add_option("CHARACTER", options->character, "Rigged character: .dae .gltf .glb .fbx .x")->required();
+  command->add_option("CHARACTER", options->character, "Rigged character: .dae .gltf .glb .vrm .fbx .x")->required();
   command->add_option("--motion", options->motion, "Clip (.json) whose poses count; else some 40 strong poses");
   command->add_option("--count", options->count, "How many proxies; with --max-error-mm, the most (128 there)")
       ->check(CLI::Range(1, proxies::k_most_fit_shapes))
@@ -313,9 +314,7 @@ void add_fit(CLI::App& app, int& status) {
   command->add_option("-o,--out", options->out, "Proxies file to write (.json)");
   command->add_option("--json", options->json, "Write the figures for machines");
   command->add_option("--curve", options->curve, "Draw proxies : error : query cost (.svg or .png, by gnuplot)");
-  command->add_option("--influences", options->influences, "Joints a vertex may hang on")
-      ->check(CLI::IsMember({4, 8}))
-      ->capture_default_str();
+  add_import_options(*command, options->import);
   command->callback([options, &status] { status = run(*options); });
 }
 

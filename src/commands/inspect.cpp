@@ -5,6 +5,7 @@
 #include "src/base/json_text.h"
 #include "src/base/outputs.h"
 #include "src/commands/commands.h"
+#include "src/options/import_options.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -30,8 +31,22 @@ std::vector<std::vector<int>> children_of(const rig::Skeleton& skeleton) {
   return children;
 }
 
-double duration_of(const rig::RawClip& clip) {
-  return clip.keys.empty() ? 0.0 : clip.keys.back().time - clip.keys.front().time;
+struct ClipFigures {
+  std::string name;
+  double seconds = 0.0;
+  std::size_t keys = 0, joints = 0;
+};
+
+std::vector<ClipFigures> figures_of(const std::vector<rig::ChannelClip>& clips) {
+  std::vector<ClipFigures> figures;
+  for (const rig::ChannelClip& clip : clips) {
+    std::set<double> times;
+    for (const rig::ChannelClip::Joint& joint : clip.joints)
+      for (const auto* keys : {&joint.translation.times, &joint.rotation.times})
+        times.insert(keys->begin(), keys->end());
+    figures.push_back({clip.name, clip.duration(), times.size(), clip.joints.size()});
+  }
+  return figures;
 }
 
 void print_joint_tree(const rig::Skeleton& skeleton, const std::vector<bool>& weighted) {
@@ -81,9 +96,9 @@ void print_import(const rig::Import& import) {
   for (const rig::MeshPart& part : character.mesh.parts)
     fmt::print("  part        {}: {} triangles\n", part.name, part.triangle_count);
   if (import.clips.empty()) fmt::print("  clips       none\n");
-  for (const rig::RawClip& clip : import.clips)
-    fmt::print("  clip        {}: {:.3f} s, {} key{}\n", clip.name, duration_of(clip), clip.keys.size(),
-               clip.keys.size() == 1 ? "" : "s");
+  for (const ClipFigures& clip : figures_of(import.clips))
+    fmt::print("  clip        {}: {:.3f} s, {} joint{}, keys at {} time{}\n", clip.name, clip.seconds, clip.joints,
+               clip.joints == 1 ? "" : "s", clip.keys, clip.keys == 1 ? "" : "s");
   for (const std::string& note : report.notes) fmt::print("  note        {}\n", note);
   print_joint_tree(character.skeleton, joints_with_weight(character));
 }
@@ -111,8 +126,9 @@ ordered_json json_of(const rig::Import& import) {
   for (const rig::MeshPart& part : character.mesh.parts)
     json["parts"].push_back({{"name", part.name}, {"triangles", part.triangle_count}, {"colour", part.colour}});
   json["clips"] = ordered_json::array();
-  for (const rig::RawClip& clip : import.clips)
-    json["clips"].push_back({{"name", clip.name}, {"seconds", duration_of(clip)}, {"keys", clip.keys.size()}});
+  for (const ClipFigures& clip : figures_of(import.clips))
+    json["clips"].push_back(
+        {{"name", clip.name}, {"seconds", clip.seconds}, {"joints", clip.joints}, {"keys", clip.keys}});
   json["notes"] = report.notes;
   json["joints"] = ordered_json::array();
   const std::vector<bool> weighted = joints_with_weight(character);
@@ -131,7 +147,7 @@ ordered_json json_of(const rig::Import& import) {
 
 struct Options {
   std::string file, json;
-  int influences = 4;
+  rig::ImportOptions import;
 };
 
 } // namespace
@@ -139,14 +155,12 @@ struct Options {
 void add_inspect(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("inspect", "Show what the importer understood of a character file");
   auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "Rigged character: .dae .gltf .glb .fbx .x")->required();
+  command->add_option("FILE", options->file, "Rigged character: .dae .gltf .glb .vrm .fbx .x")->required();
   command->add_option("--json", options->json, "Write the same for machines");
-  command->add_option("--influences", options->influences, "Joints a vertex may hang on")
-      ->check(CLI::IsMember({4, 8}))
-      ->capture_default_str();
+  add_import_options(*command, options->import);
   command->callback([options, &status] {
     check_outputs({{"--json", options->json}}, {options->file});
-    const rig::Import import = rig::import_character(options->file, {.max_influences = options->influences});
+    const rig::Import import = rig::import_character(options->file, options->import);
     if (!options->json.empty()) // names come from the file and need not be UTF-8
       write_file(options->json, json_text(json_of(import)));
     print_import(import);

@@ -7,6 +7,7 @@
 #include "src/base/json_text.h"
 #include "src/base/outputs.h"
 #include "src/commands/commands.h"
+#include "src/options/import_options.h"
 #include "src/options/scene_options.h"
 #include "src/view/pose/joint_limits_file.h"
 #include "src/view/pose/pose_files.h"
@@ -23,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Options {
+  rig::ImportOptions import;
   std::string character, motion, out, limits, json, screenshot, joint;
   double time = 0.0;
   int width = 1280, height = 800;
@@ -52,7 +54,7 @@ fs::path clip_file(const Options& options) {
 int run(const Options& options) {
   const fs::path file = clip_file(options);
   check_files(options, file);
-  const rig::Character character = rig::import_character(options.character).character;
+  const rig::Character character = rig::import_character(options.character, options.import).character;
   const rig::Skeleton& skeleton = character.skeleton;
   const fs::path begin = options.motion.empty() ? file : fs::path(options.motion); // work goes on where it was left
   EditState start = !options.motion.empty() || fs::exists(begin) ? edit_state(rig::read_clip(begin), skeleton)
@@ -86,7 +88,8 @@ int run(const Options& options) {
 void add_pose(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("pose", "Pose a character with mouse and keyboard, and save key poses");
   auto options = std::make_shared<Options>();
-  command->add_option("CHARACTER", options->character, "Rigged character: .dae .gltf .glb .fbx .x")->required();
+  command->add_option("CHARACTER", options->character, "Rigged character: .dae .gltf .glb .vrm .fbx .x")->required();
+  add_import_options(*command, options->import);
   command->add_option("--motion", options->motion,
                       "Clip (.json) to begin with; else what --out holds, else the rest pose");
   command->add_option("-o,--out", options->out,

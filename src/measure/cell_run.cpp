@@ -207,7 +207,7 @@ CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& pro
         });
   }
   std::vector<Transform> pose(scene.character.skeleton.rest_local);
-  rig::sample(scene.clip, scene.clip.times.front() + session.time(), pose);
+  rig::sample(scene.motion, scene.motion.start() + session.time(), pose);
   for (int f = 0; f < protocol.settle && alive(); ++f) frame([&] { session.advance_to(pose, k_settling_drag); }, [] {});
   run.trajectory.drape = positions_of(session);
   for (int f = 0; f < protocol.held && alive(); ++f)

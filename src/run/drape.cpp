@@ -54,7 +54,7 @@ DrapeResult drape(const Wearer& wearer, std::span<const Transform> first, double
 
 DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress,
                   const std::atomic<bool>* stop) {
-  return drape(scene, scene.clip.key(0), longest, progress, stop);
+  return drape(scene, rig::first_pose(scene.motion), longest, progress, stop);
 }
 
 std::uint64_t drape_fingerprint(const Scene& scene) {
@@ -90,7 +90,7 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
     }
   };
   add_pose(scene.character.skeleton.rest_local);
-  add_pose(scene.clip.key(0));
+  add_pose(rig::first_pose(scene.motion));
   for (const proxies::Proxy& proxy : scene.proxies) {
     if (!proxy.enabled) continue;
     add(proxy.radius, proxy.friction);

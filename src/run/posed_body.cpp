@@ -10,7 +10,7 @@ PosedBody::PosedBody(const Scene& scene)
 }
 
 void PosedBody::pose_at(double time) {
-  rig::pose_at(scene_->clip, scene_->character.skeleton, time, local_, world_);
+  rig::pose_at(scene_->motion, scene_->character.skeleton, time, local_, world_);
   rig::skinning_palette(scene_->character.skin, world_, palette_);
   rig::skin_vertices(scene_->character.mesh, scene_->character.skin, palette_, positions_, normals_);
   colliders_.reset(world_);

@@ -8,7 +8,7 @@
 namespace tutu::app {
 
 int frames_of(const Scene& scene) {
-  const double frames = std::round(scene.clip.duration() * scene.settings.frames_per_second);
+  const double frames = std::round(scene.motion.duration() * scene.settings.frames_per_second);
   if (!(frames <= k_most_frames))
     throw InputError(scene.file, "/motion", fmt::format("{:.6g} frames", frames),
                      fmt::format("at most {}", k_most_frames));

@@ -1,6 +1,7 @@
 // A character in motion and what it wears: everything of a scene that does not change while it plays, in memory.
 #pragma once
 
+#include "rig/motion.h"
 #include "rig/text.h"
 #include "src/run/wearer.h"
 
@@ -11,7 +12,7 @@ namespace tutu::app {
 
 struct Scene : Wearer {
   std::string file; ///< what messages call it; its stem is its name
-  rig::Clip clip;
+  rig::Motion motion;
 
   /// For people, titles and files that are named after it; without control characters, whatever the file is called.
   std::string name() const { return plain_text(std::filesystem::path(file).stem().string()); }

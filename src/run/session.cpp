@@ -8,19 +8,19 @@ Session::Session(const Scene& scene)
     : Runtime(scene), scene_(&scene), local_(scene.character.skeleton.rest_local), world_(local_.size()) {}
 
 void Session::start(const GarmentPositions& garment_positions) {
-  rig::pose_at(scene_->clip, scene_->character.skeleton, 0.0, local_, world_);
+  rig::pose_at(scene_->motion, scene_->character.skeleton, 0.0, local_, world_);
   Runtime::start(world_, garment_positions);
 }
 
 void Session::jump(double time) {
-  rig::pose_at(scene_->clip, scene_->character.skeleton, time, local_, world_);
+  rig::pose_at(scene_->motion, scene_->character.skeleton, time, local_, world_);
   Runtime::jump(world_, time);
 }
 
 void Session::advance() {
   if (failure() || stopped()) return;
   Stopwatch watch;
-  rig::sample(scene_->clip, scene_->clip.times.front() + time() + frame_seconds(), local_);
+  rig::sample(scene_->motion, scene_->motion.start() + time() + frame_seconds(), local_);
   const double sampling = watch.lap();
   advance_to(local_, 0.0);
   times_.pose += sampling;

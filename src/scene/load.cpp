@@ -54,11 +54,12 @@ rig::Clip clip_for(const MocapMotion& motion, const rig::Skeleton& skeleton, std
   return retargeted(take.clip, take.skeleton, skeleton, motion.bvh, notes);
 }
 
-const rig::RawClip& own_animation(const OwnMotion& motion, const rig::Import& import, const std::string& scene_file) {
+const rig::ChannelClip& own_animation(const OwnMotion& motion, const rig::Import& import,
+                                      const std::string& scene_file) {
   const auto& clips = import.clips;
   const auto fail = [&](const std::string& found) {
     std::string names;
-    for (const rig::RawClip& clip : clips) names += (names.empty() ? "" : ", ") + clip.name;
+    for (const rig::ChannelClip& clip : clips) names += (names.empty() ? "" : ", ") + clip.name;
     const std::string expected =
         clips.empty() ? "a character with animations" : fmt::format("0 to {}, or one of: {}", clips.size() - 1, names);
     throw InputError(scene_file, "/motion/animation", found, expected);
@@ -68,16 +69,17 @@ const rig::RawClip& own_animation(const OwnMotion& motion, const rig::Import& im
     return clips[*index];
   }
   const std::string& name = std::get<std::string>(motion.animation);
-  for (const rig::RawClip& clip : clips)
+  for (const rig::ChannelClip& clip : clips)
     if (clip.name == name) return clip;
   fail('"' + name + '"');
   return clips.front(); // not reached: fail() throws
 }
 
-rig::Clip load_motion(const SceneDescription& description, const rig::Import& import, std::vector<std::string>& notes) {
+rig::Motion load_motion(const SceneDescription& description, const rig::Import& import,
+                        std::vector<std::string>& notes) {
   const rig::Skeleton& skeleton = import.character.skeleton;
   if (const auto* own = std::get_if<OwnMotion>(&description.motion))
-    return build(own_animation(*own, import, description.file.string()), skeleton);
+    return own_animation(*own, import, description.file.string());
   if (const auto* texts = std::get_if<rig::ThreeTexts>(&description.motion)) {
     std::string unit_note;
     rig::Clip clip = build(rig::read_three_texts(*texts, skeleton, &unit_note), skeleton);
@@ -154,14 +156,14 @@ LoadedScene load_scene(const SceneDescription& description) {
   scene.file = description.file.string();
   scene.files = description;
   scene.ground_height = description.ground_height;
-  rig::Import import = within_memory(description.character.string(), [&] {
-    return rig::import_character(description.character, {description.max_influences});
-  });
+  rig::Import import = within_memory(description.character.string(),
+                                     [&] { return rig::import_character(description.character, description.import); });
   for (const std::string& note : import.report.notes)
     scene.notes.push_back(description.character.filename().string() + ": " + note);
-  scene.clip = within_memory(motion_file(description), [&] { return load_motion(description, import, scene.notes); });
-  if (description.interpolation) rig::set_interpolation(scene.clip, *description.interpolation);
+  scene.motion = within_memory(motion_file(description), [&] { return load_motion(description, import, scene.notes); });
   scene.character = std::move(import.character);
+  if (description.interpolation)
+    rig::set_interpolation(scene.motion, scene.character.skeleton, *description.interpolation);
   rig::set_skinning(scene.character.skin, scene.character.mesh, description.skinning, description.character.string());
 
   if (description.proxies)

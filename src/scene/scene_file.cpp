@@ -41,7 +41,7 @@ MocapMotion read_mocap(const JsonValue& json) {
   return motion;
 }
 
-Motion read_motion(const JsonValue& json) {
+MotionSource read_motion(const JsonValue& json) {
   if (json.is_string()) return ClipMotion{existing_in(json), std::nullopt};
   if (!json.is_object()) throw json.error("a clip's path, or an object with clip, animation, texts or bvh");
   if (json.has("bvh")) return read_mocap(json);
@@ -81,6 +81,35 @@ GarmentEntry read_garment_entry(const JsonValue& json) {
   return entry;
 }
 
+/// A name, a number of metres, or a number of metres as text.
+double read_unit(const JsonValue& value) {
+  if (value.is_number()) return value.positive();
+  const std::optional<double> metres = rig::metres_in(value.string());
+  if (!metres) throw value.error("m, cm, mm, dm, in, ft, or the metres in a unit");
+  return *metres;
+}
+
+void read_character(const JsonValue& value, SceneFiles& scene) {
+  if (!value.is_object()) {
+    scene.character = existing_in(value);
+    return;
+  }
+  value.only_keys({"file", "max_influences", "height", "unit", "rest"});
+  scene.character = existing_in(value.at("file"));
+  rig::ImportOptions& import = scene.import;
+  if (const auto most = value.find("max_influences")) {
+    import.max_influences = most->integer_in(4, 8);
+    if (import.max_influences != 4 && import.max_influences != 8) throw most->error("4 or 8");
+  }
+  if (const auto height = value.find("height")) import.height = height->positive();
+  if (const auto unit = value.find("unit")) {
+    if (import.height) throw unit->error("no unit beside a height: either says how large the body is");
+    import.metres_per_unit = read_unit(*unit);
+  }
+  if (const auto rest = value.find("rest"))
+    import.rest = rest->string_among(rig::k_rest_pose_names) == "node" ? rig::RestPose::node : rig::RestPose::bind;
+}
+
 } // namespace
 
 std::vector<fs::path> inputs_of(const SceneFiles& files) {
@@ -117,17 +146,7 @@ SceneDescription read_scene(const fs::path& file) {
                   "collision", "drape"});
   SceneDescription scene;
   scene.file = file;
-  const JsonValue character = json.at("character");
-  if (character.is_object()) {
-    character.only_keys({"file", "max_influences"});
-    scene.character = existing_in(character.at("file"));
-    if (const auto most = character.find("max_influences")) {
-      scene.max_influences = most->integer_in(4, 8);
-      if (scene.max_influences != 4 && scene.max_influences != 8) throw most->error("4 or 8");
-    }
-  } else {
-    scene.character = existing_in(character);
-  }
+  read_character(json.at("character"), scene);
   scene.motion = read_motion(json.at("motion"));
   if (const auto interpolation = json.find("interpolation"))
     scene.interpolation = rig::interpolation_named(interpolation->string_among(rig::k_interpolation_names));

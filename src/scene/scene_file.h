@@ -1,6 +1,7 @@
 // Scenes on disk: JSON, schema in assets/schema/scene.schema.json. Paths in a scene are relative to the scene's folder.
 #pragma once
 
+#include "rig/import/import.h"
 #include "rig/io/bvh.h"
 #include "rig/io/clip_file.h"
 #include "rig/skin.h"
@@ -30,7 +31,7 @@ struct MocapMotion {
   rig::BvhOptions options;
   std::map<std::string, std::optional<std::string>> joints; ///< the take's name -> the character's; none: left out
 };
-using Motion = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts, MocapMotion>;
+using MotionSource = std::variant<ClipMotion, OwnMotion, rig::ThreeTexts, MocapMotion>;
 
 struct GarmentEntry {
   std::filesystem::path file;
@@ -43,9 +44,9 @@ struct GarmentEntry {
 struct SceneFiles {
   std::filesystem::path file; ///< the scene's own
   std::filesystem::path character;
-  int max_influences = 4;
+  rig::ImportOptions import; ///< how to read it
   rig::Skinning skinning = rig::Skinning::linear;
-  Motion motion;
+  MotionSource motion;
   std::optional<rig::Interpolation> interpolation; ///< instead of the clip's own
   std::optional<std::filesystem::path> proxies;
   std::vector<GarmentEntry> garments;

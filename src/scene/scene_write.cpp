@@ -24,7 +24,18 @@ private:
   fs::path folder_;
 };
 
-ordered_json motion_json(const Motion& motion, const Paths& paths) {
+ordered_json character_json(const SceneFiles& files, const Paths& paths) {
+  const rig::ImportOptions standard;
+  const rig::ImportOptions& import = files.import;
+  ordered_json json = {{"file", paths(files.character)}};
+  if (import.max_influences != standard.max_influences) json["max_influences"] = import.max_influences;
+  if (import.height) json["height"] = *import.height;
+  if (import.metres_per_unit) json["unit"] = *import.metres_per_unit;
+  if (import.rest != standard.rest) json["rest"] = rig::k_rest_pose_names[static_cast<std::size_t>(import.rest)];
+  return json.size() == 1 ? json["file"] : json;
+}
+
+ordered_json motion_json(const MotionSource& motion, const Paths& paths) {
   if (const auto* own = std::get_if<OwnMotion>(&motion)) {
     ordered_json json;
     std::visit([&](const auto& which) { json["animation"] = which; }, own->animation);
@@ -66,9 +77,7 @@ void write_scene(const SceneDescription& d, const fs::path& file, const std::str
   const Paths paths(file);
   ordered_json json;
   if (!comment.empty()) json["comment"] = comment;
-  json["character"] = paths(d.character);
-  if (d.max_influences != SceneDescription{}.max_influences)
-    json["character"] = {{"file", paths(d.character)}, {"max_influences", d.max_influences}};
+  json["character"] = character_json(d, paths);
   json["motion"] = motion_json(d.motion, paths);
   if (d.interpolation) json["interpolation"] = rig::k_interpolation_names[static_cast<std::size_t>(*d.interpolation)];
   json["skinning"] = rig::k_skinning_names[static_cast<std::size_t>(d.skinning)];

@@ -18,13 +18,18 @@ const std::string& sound_import() {
   static const std::string bytes = [] {
     rig::Import import;
     import.character = small_character();
-    rig::RawClip& clip = import.clips.emplace_back();
+    rig::ChannelClip& clip = import.clips.emplace_back();
     clip.name = "walk";
-    for (const double time : {0.0, 0.5}) {
-      rig::RawClip::Key& key = clip.keys.emplace_back();
-      key.time = time;
-      key.joints[import.character.skeleton.names[1]].rotation = Quat(0.6, 0, 0.8, 0);
-    }
+    clip.end = 0.5;
+    clip.still = import.character.skeleton.rest_local;
+    rig::ChannelClip::Joint& joint = clip.joints.emplace_back();
+    joint.joint = 1;
+    joint.translation = {{0.0, 0.5},
+                         {Vec3::Zero(), Vec3::UnitX()},
+                         {rig::Law::cubic, rig::Law::step},
+                         {Vec3::Zero(), Vec3::Zero()},
+                         {Vec3::Zero(), Vec3::Zero()}};
+    joint.rotation = {{0.0}, {Quat(0.6, 0, 0.8, 0).coeffs()}, {rig::Law::linear}, {}, {}};
     return packed(std::move(import));
   }();
   return bytes;
@@ -66,8 +71,12 @@ void fuzz_answer(std::string_view input) {
     std::vector<Vec3f> positions(read.character.mesh.positions.size()), normals(positions.size());
     rig::skinning_palette(read.character.skin, rest, palette);
     rig::skin_vertices(read.character.mesh, read.character.skin, palette, positions, normals);
-    for (const rig::RawClip& clip : read.clips)
-      require_poses(rig::build_clip(clip, read.character.skeleton).local, "a clip has poses");
+    for (const rig::ChannelClip& clip : read.clips)
+      for (const double time : {clip.start, 0.5 * (clip.start + clip.end), clip.end + 1.0}) {
+        std::vector<Transform> local(clip.still.size());
+        rig::sample(clip, time, local);
+        require_poses(local, "a clip has poses");
+      }
   } catch (const InputError&) {
     throw;
   } catch (const std::runtime_error& cut_off) { // the box died: who asked says so

@@ -185,7 +185,8 @@ std::vector<FileAnimation> animations(const ColladaDocument& document, const std
       clips.push_back(read_clip(document, node_of, clip, used));
   if (clips.empty()) { // animations at the top are a node's each, or one exporter's folders: never takes of their own
     clips.push_back(ClipReader(document, node_of).read(all));
-    if (tops.size() == 1) clips.back().name = name_of(tops[0]);
+    const auto is_named_as_first = [&](const pugi::xml_node& top) { return name_of(top) == name_of(tops[0]); };
+    if (std::ranges::all_of(tops, is_named_as_first)) clips.back().name = name_of(tops[0]);
     return clips;
   }
   std::vector<std::string> unused;

@@ -7,7 +7,6 @@
 #include "rig/import/surface.h"
 
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -93,33 +92,16 @@ template <typename Archive, typename T> void pass(Archive& archive, std::optiona
   if (given && !value) value.emplace();
   if (given) pass(archive, *value);
 }
-template <typename Archive> void pass(Archive& archive, JointKey& key) {
-  pass(archive, key.translation);
-  pass(archive, key.rotation);
-}
-template <typename Archive> void pass(Archive& archive, std::map<std::string, JointKey>& value) {
-  std::size_t size = value.size();
-  archive.count(size, 1);
-  if (!value.empty()) {
-    for (auto& [name, key] : value) {
-      std::string copy = name;
-      pass(archive, copy);
-      pass(archive, key);
-    }
-    return;
-  }
-  for (std::size_t i = 0; i < size; ++i) {
-    std::string name;
-    JointKey key;
-    pass(archive, name);
-    pass(archive, key);
-    value.emplace_hint(value.end(), std::move(name), key);
-    if (value.size() != i + 1) throw std::runtime_error("the reader's answer has a joint twice in a key");
-  }
+template <typename Archive> void pass(Archive& archive, Law& law) {
+  auto value = static_cast<std::uint8_t>(law);
+  pass(archive, value);
+  if (value > static_cast<std::uint8_t>(Law::cubic))
+    throw std::runtime_error("the reader's answer has a law that is none");
+  law = Law{value};
 }
 template <typename Archive> void pass(Archive& archive, MeshPart& part);
-template <typename Archive> void pass(Archive& archive, RawClip::Key& key);
-template <typename Archive> void pass(Archive& archive, RawClip& clip);
+template <typename Archive> void pass(Archive& archive, ChannelClip::Joint& joint);
+template <typename Archive> void pass(Archive& archive, ChannelClip& clip);
 template <typename Archive, typename T> void pass(Archive& archive, std::vector<T>& value) {
   std::size_t size = value.size();
   if constexpr (std::is_arithmetic_v<T>) {
@@ -140,15 +122,25 @@ template <typename Archive> void pass(Archive& archive, MeshPart& part) {
   pass(archive, part.triangle_count);
   pass(archive, part.colour);
 }
-template <typename Archive> void pass(Archive& archive, RawClip::Key& key) {
-  pass(archive, key.time);
-  pass(archive, key.name);
-  pass(archive, key.joints);
+template <typename Archive, typename Value> void pass(Archive& archive, Curve<Value>& curve) {
+  pass(archive, curve.times);
+  pass(archive, curve.values);
+  pass(archive, curve.laws);
+  pass(archive, curve.leaving);
+  pass(archive, curve.arriving);
 }
-template <typename Archive> void pass(Archive& archive, RawClip& clip) {
+template <typename Archive> void pass(Archive& archive, ChannelClip::Joint& joint) {
+  pass(archive, joint.joint);
+  pass(archive, joint.translation);
+  pass(archive, joint.rotation);
+}
+template <typename Archive> void pass(Archive& archive, ChannelClip& clip) {
   pass(archive, clip.name);
   pass(archive, clip.extrapolation);
-  pass(archive, clip.keys);
+  pass(archive, clip.start);
+  pass(archive, clip.end);
+  pass(archive, clip.still);
+  pass(archive, clip.joints);
 }
 template <typename Archive> void pass(Archive& archive, Character& character) {
   pass(archive, character.skeleton.names);

@@ -52,7 +52,9 @@ struct FileMesh {
 /// A mesh where it is drawn: once a node that holds it, and of a mesh with skins once a skin.
 struct FileInstance {
   int mesh = -1, node = -1;
-  std::vector<Binding> skin; ///< empty: it moves with its node
+  std::vector<Binding> skin = {}; ///< empty: it moves with its node
+  /// The space the inverse binds were made in, as far as the file tells it: bound_from_vertex.
+  Affine bind_shape = Affine::Identity();
 };
 
 /// One node of one animation: parent_from_node, file's unit, s. A curve without keys: as the node stands.

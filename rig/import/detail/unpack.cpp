@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 namespace tutu::rig::import_detail {
 namespace {
@@ -88,14 +87,12 @@ void check_skin(const Skin& skin, std::size_t vertices, int joints, const Checke
   }
 }
 
-void check_clips(const std::vector<RawClip>& clips, const Skeleton& skeleton, const Checker& checker) {
-  const std::set<std::string_view> joints(skeleton.names.begin(), skeleton.names.end());
-  for (const RawClip& clip : clips) {
+void check_clips(const std::vector<ChannelClip>& clips, const Skeleton& skeleton, const Checker& checker) {
+  for (const ChannelClip& clip : clips) {
     checker.require_text(clip.name, "clip names");
-    for (const RawClip::Key& key : clip.keys) {
-      checker.require_text(key.name, "key names");
-      for (const auto& [name, joint] : key.joints) checker.require(joints.contains(name), "joints of keys");
-    }
+    checker.require(clip.still.size() == skeleton.names.size() && !clip.joints.empty(), "joints of clips");
+    for (const Transform& still : clip.still)
+      checker.require(is_unit(still.rotation) && is_in_bounds(still.translation), "poses of clips");
     rig::check(clip);
   }
 }
@@ -172,7 +169,7 @@ std::string answer_of(const std::function<void(Packer&)>& work) {
 Import unpack_import(std::string_view answer, const std::string& file) {
   auto import = unpack<Import>(answer, file, k_expected_character);
   import.character.file = file;
-  for (RawClip& clip : import.clips) clip.file = file;
+  for (ChannelClip& clip : import.clips) clip.file = file;
   const Character& character = import.character;
   const Checker checker(file, k_expected_character);
   check_skeleton(character.skeleton, checker, file);

@@ -1,5 +1,6 @@
 #include "rig/import/gltf/gltf.h"
 
+#include "rig/import/detail/parts.h"
 #include "rig/import/gltf/animations.h"
 #include "rig/import/gltf/meshes.h"
 
@@ -10,20 +11,14 @@ namespace {
 
 /// Textures are never opened.
 void note_outside_textures(const GltfDocument& document, FileScene& scene) {
-  constexpr std::size_t k_most_named = 6;
   const Reach reach(document.path());
   std::set<std::string> outside;
   for (const GltfValue& image : document.root().items("images"))
     if (const std::string uri = image.text_or("uri", ""); !uri.empty() && !uri.starts_with("data:"))
       if (const std::string name = decode_percent(uri); !reach.holds_name(name)) outside.insert(name);
-  if (outside.empty()) return;
-  std::string note = outside.size() == 1 ? "1 texture" : std::to_string(outside.size()) + " textures";
-  note += " outside of the file's folder not opened:";
-  std::size_t named = 0;
-  for (const std::string& name : outside)
-    if (++named <= k_most_named) note += (named == 1 ? " " : ", ") + name;
-  if (named > k_most_named) note += " and " + std::to_string(named - k_most_named) + " more";
-  scene.notes.push_back(std::move(note));
+  if (!outside.empty())
+    scene.notes.push_back(count_of(outside.size(), "texture") +
+                          " outside of the file's folder not opened: " + list_of({outside.begin(), outside.end()}));
 }
 
 } // namespace

@@ -108,6 +108,24 @@ private:
   std::vector<std::optional<Reference>> levels_;
 };
 
+/// Its poses at the keys and between them, where the law shows.
+void add_motion(const LoadedScene& scene, ContentHash& hash) {
+  const std::vector<double> keys = rig::key_times(scene.motion);
+  std::vector<Transform> pose(scene.character.skeleton.rest_local);
+  const auto add = [&](double time) {
+    hash.add(time);
+    rig::sample(scene.motion, time, pose);
+    for (const Transform& t : pose) {
+      hash.add(t.translation);
+      hash.add(Vec3(t.rotation.x(), t.rotation.y(), t.rotation.z()));
+    }
+  };
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    add(keys[k]);
+    if (k + 1 < keys.size()) add(0.5 * (keys[k] + keys[k + 1]));
+  }
+}
+
 } // namespace
 
 std::string reference_fingerprint(const LoadedScene& scene, const ReferencePlan& plan) {
@@ -120,11 +138,7 @@ std::string reference_fingerprint(const LoadedScene& scene, const ReferencePlan&
     for (const std::uint32_t corner : t) hash.add(std::uint64_t{corner});
   for (const float weight : scene.character.skin.weights) hash.add(static_cast<double>(weight));
   for (const auto slot : scene.character.skin.slots) hash.add(static_cast<std::uint64_t>(slot));
-  for (const double time : scene.clip.times) hash.add(time);
-  for (const Transform& t : scene.clip.local) {
-    hash.add(t.translation);
-    hash.add(Vec3(t.rotation.x(), t.rotation.y(), t.rotation.z()));
-  }
+  add_motion(scene, hash);
   for (const cloth::Garment& garment : scene.garments)
     for (const auto& t : garment.triangles)
       for (const std::uint32_t corner : t) hash.add(std::uint64_t{corner});

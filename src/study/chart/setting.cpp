@@ -109,7 +109,7 @@ GarmentPositions start_at_resolution(const LoadedScene& scene, const GarmentPosi
     positions.push_back(positions_on(scene.garments[g], start[g], other.garments[g]));
   Session session(other);
   session.start(positions);
-  const auto pose = other.clip.key(0);
+  const auto pose = rig::first_pose(other.motion);
   for (int f = 0; f < other.settings.frames_per_second && !session.failure(); ++f)
     session.advance_to(pose, k_easing_drag);
   for (std::size_t g = 0; g < start.size(); ++g)

@@ -41,7 +41,7 @@ PlanProxies::PlanProxies(const Scene& scene, const std::vector<Trajectory>& runs
   const int frames = frames_of(scene);
   std::vector<Transform> local(scene.character.skeleton.rest_local);
   for (int f = 0; f <= frames; ++f) {
-    rig::pose_at(scene.clip, scene.character.skeleton, f / double(scene.settings.frames_per_second), local,
+    rig::pose_at(scene.motion, scene.character.skeleton, f / double(scene.settings.frames_per_second), local,
                  poses_.emplace_back(local.size()));
   }
 }

@@ -50,7 +50,7 @@ public:
     world_.resize(local_.size());
   }
   const std::vector<Transform>& at(double time) {
-    rig::pose_at(scene_->clip, scene_->character.skeleton, time, local_, world_);
+    rig::pose_at(scene_->motion, scene_->character.skeleton, time, local_, world_);
     return world_;
   }
 
@@ -65,7 +65,7 @@ std::vector<ProxySetting> proxies_of(const Scene& scene) {
   const int frames = frames_of(scene);
   std::vector<std::vector<Transform>> poses;
   for (int k = 0; k < std::min(k_reach_poses, frames + 1); ++k)
-    poses.push_back(poser.at(scene.clip.duration() * k / k_reach_poses));
+    poses.push_back(poser.at(scene.motion.duration() * k / k_reach_poses));
 
   proxies::ColliderSet colliders(scene.proxies, std::nullopt);
   std::vector<double> speeds(static_cast<std::size_t>(colliders.size()), 0.0);

@@ -213,7 +213,7 @@ std::vector<Vec3f> motion_points(const Scene& scene) {
   std::vector<Transform> local(skeleton.rest_local.size()), model(local.size());
   std::vector<Vec3f> points;
   for (int s = 0; s < k_samples; ++s) {
-    rig::pose_at(scene.clip, skeleton, scene.clip.duration() * s / k_samples, local, model);
+    rig::pose_at(scene.motion, skeleton, scene.motion.duration() * s / k_samples, local, model);
     for (const Transform& joint : model)
       for (int axis = 0; axis < 3; ++axis)
         for (const double side : {-k_flesh, k_flesh})

@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
     const LoadedScene scene = load_scene(read_scene(argc > 1 ? argv[1] : "scene.json"));
     std::vector<Transform> local(scene.character.skeleton.joint_count()), joints(local.size());
     const auto pose_at = [&](double time) { // here: your animation
-      rig::pose_at(scene.clip, scene.character.skeleton, time, local, joints);
+      rig::pose_at(scene.motion, scene.character.skeleton, time, local, joints);
     };
     // Let the garments fall into place, once; keep what comes out of it.
     const DrapeResult draped = drape(scene, 4.0, [](int, int) { return true; });

@@ -12,6 +12,7 @@
 using namespace tutu;
 using namespace tutu::rig;
 using namespace tutu::test;
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -94,17 +95,56 @@ TEST(Import, UnitsAndAxesOfCollada) {
   }
 }
 
-TEST(Import, GuessesTheUnitOfAnImplausibleHeight) {
+/// As upright(), in centimetres, though the file says metres.
+TinyFile in_centimetres() {
   TinyFile file = upright();
   file.nodes[0].children[0].matrix = moved(0, 100, 0);
   file.nodes[0].children[0].children[0].matrix = moved(0, 50, 0);
   file.meshes[0].inverse_binds = {moved(0, -100, 0), moved(0, -150, 0)};
   for (Vec3& p : file.meshes[0].positions) p *= 100;
-  const Import import = import_tiny(file); // says metres
-  EXPECT_NEAR(import.report.height, 1.7, 1e-5);
-  EXPECT_DOUBLE_EQ(import.report.metres_per_unit, 0.01);
-  EXPECT_THAT(import.report.notes, Contains(HasSubstr("height 170 read as centimetres")));
-  expect_rest(import, file.meshes[0].positions, scaled(0.01), 1e-5);
+  return file;
+}
+
+TEST(Import, WhatAFileSaysOfItsUnitCounts) {
+  const TinyFile file = in_centimetres();
+  const Import import = import_tiny(file);
+  EXPECT_NEAR(import.report.height, 170.0, 1e-3);
+  EXPECT_DOUBLE_EQ(import.report.metres_per_unit, 1.0);
+  EXPECT_THAT(import.report.notes, ElementsAre(AllOf(HasSubstr("170 m high, as its unit says"),
+                                                     HasSubstr("0.01 times that, 1.7 m"), HasSubstr("--height"))));
+  expect_rest(import, file.meshes[0].positions, Matrix4::Identity(), 1e-3);
+}
+
+TEST(Import, WhoAsksDecidesOfTheSize) {
+  const TinyFile file = in_centimetres();
+  for (const ImportOptions& options : {ImportOptions{.height = 1.7}, ImportOptions{.metres_per_unit = 0.01}}) {
+    const Import import = import_tiny(file, options);
+    EXPECT_NEAR(import.report.height, 1.7, 1e-5);
+    EXPECT_NEAR(import.report.metres_per_unit, 0.01, 1e-7);
+    EXPECT_THAT(import.report.notes, IsEmpty());
+    expect_rest(import, file.meshes[0].positions, scaled(0.01), 1e-5);
+  }
+  EXPECT_NEAR(import_tiny(file, {.height = 5.2}).report.height, 5.2, 1e-5);
+  EXPECT_THAT(import_tiny(file, {.height = 5.2}).report.notes, IsEmpty()) << "it was said";
+}
+
+TEST(Import, ABodyOfMillimetresIsRefusedWithTheLikelyFactor) {
+  TinyFile file = in_centimetres();
+  file.unit = 1e-4;
+  try {
+    import_tiny(file);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("0.017 m"), HasSubstr("100 times"), HasSubstr("--height")));
+  }
+  EXPECT_NEAR(import_tiny(file, {.height = 1.7}).report.height, 1.7, 1e-5);
+}
+
+TEST(Import, UnitsByNameAndByNumber) {
+  EXPECT_EQ(metres_in("cm"), 0.01);
+  EXPECT_EQ(metres_in("inches"), 0.0254);
+  EXPECT_EQ(metres_in("0.5"), 0.5);
+  for (const char* wrong : {"", "cms", "0", "-1", "nan", "inf", "1e12", "1 m"}) EXPECT_FALSE(metres_in(wrong)) << wrong;
 }
 
 TEST(Import, ScaledArmature) {
@@ -151,6 +191,47 @@ TEST(Import, BindPoseAwayFromRestPose) {
     expected.push_back(sum.head<3>());
   }
   expect_rest(import, expected, Matrix4::Identity());
+}
+
+TEST(Import, RestsInItsBindPose) {
+  // Authored in a leap: away from where it was bound, the head bent.
+  TinyFile file = upright();
+  Matrix4& hips = file.nodes[0].children[0].matrix;
+  Matrix4& head = file.nodes[0].children[0].children[0].matrix;
+  const Matrix4 bound_hips = hips, bound_head = hips * head;
+  hips = moved(0.3, 1.4, 0.2) * turned(0.8, Vec3(1, 0.2, 0));
+  head = head * turned(1.0, Vec3::UnitZ());
+  const Import import = import_tiny(file);
+  const auto rest = rest_model(import.character.skeleton);
+  EXPECT_LT((rest[0].translation - bound_hips.topRightCorner<3, 1>()).norm(), 1e-6);
+  EXPECT_LT((rest[1].translation - bound_head.topRightCorner<3, 1>()).norm(), 1e-6);
+  EXPECT_LT((rest[2].translation - (bound_head * moved(0, 0.2, 0)).topRightCorner<3, 1>()).norm(), 1e-6)
+      << "an unbound joint goes with its parent";
+  EXPECT_NEAR(import.report.height, 1.7, 1e-5);
+  expect_rest(import, file.meshes[0].positions, Matrix4::Identity());
+  EXPECT_THAT(import.report.notes, ElementsAre(HasSubstr("rests in its bind pose")));
+
+  const Import by_nodes = import_tiny(file, {.rest = RestPose::node});
+  EXPECT_LT((rest_model(by_nodes.character.skeleton)[0].translation - Vec3(0.3, 1.4, 0.2)).norm(), 1e-6);
+  EXPECT_THAT(by_nodes.report.notes, IsEmpty());
+  for (std::size_t v = 0; v < 2; ++v) // bound to the hips alone
+    EXPECT_LT((skinned(by_nodes.character, rest_model(by_nodes.character.skeleton))[v] -
+               (hips * bound_hips.inverse() * file.meshes[0].positions[v].homogeneous()).head<3>())
+                  .norm(),
+              1e-5);
+}
+
+TEST(Import, AMotionLeavesOthersWhereTheirNodesStand) {
+  TinyFile file = upright();
+  const Matrix4 bound = file.nodes[0].children[0].matrix;
+  Matrix4& head = file.nodes[0].children[0].children[0].matrix;
+  head = head * turned(1.0, Vec3::UnitZ());
+  file.tracks = {{"Hips-1", {0, 1}, {bound, moved(1, 0, 0) * bound}}};
+  const Import import = import_tiny(file);
+  std::vector<Transform> local(import.character.skeleton.rest_local);
+  sample(import.clips.at(0), 0.0, local);
+  EXPECT_LT(local[1].rotation.angularDistance(Quat(Eigen::Matrix3d(head.topLeftCorner<3, 3>()))), 1e-6);
+  EXPECT_GT(local[1].rotation.angularDistance(import.character.skeleton.rest_local[1].rotation), 0.9);
 }
 
 /// A second mesh, and a second skeleton with the names of the first, `apart` from it in x.

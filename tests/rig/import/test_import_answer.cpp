@@ -30,6 +30,8 @@ template <typename T> std::string packed(T value) {
 Import sound_import() {
   Import import = import_character(write_text("tiny.glb", tiny_glb()));
   import.report.notes = {"a note"};
+  import.clips.at(0).joints.at(0).rotation = {
+      {0.0, 1.0}, {Quat(0.6, 0, 0.8, 0).coeffs(), Quat::Identity().coeffs()}, {Law::linear, Law::step}, {}, {}};
   return import;
 }
 TriangleSurface sound_surface() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, {{0, 1, 2}, {1, 3, 2}}}; }
@@ -38,7 +40,9 @@ TriangleSurface sound_surface() { return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 
 void use(const Import& import) {
   const Character& c = import.character;
   skinned(c, rest_model(c.skeleton));
-  for (const RawClip& clip : import.clips) build_clip(clip, c.skeleton);
+  std::vector<Transform> local(c.skeleton.rest_local);
+  for (const ChannelClip& clip : import.clips)
+    for (const double time : {-1.0, 0.0, 0.3, 9.0}) sample(clip, time, local);
   for (const MeshPart& part : c.mesh.parts)
     for (std::uint32_t t = 0; t < part.triangle_count; ++t) ASSERT_LT(t + part.first_triangle, c.mesh.triangles.size());
 }
@@ -68,7 +72,9 @@ TEST(ImportAnswer, ComesBackAsItWent) {
   EXPECT_EQ(after.character.skin.weights, before.character.skin.weights);
   ASSERT_EQ(after.clips.size(), 1u);
   EXPECT_EQ(after.clips[0].file, "file.glb");
-  EXPECT_EQ(after.clips[0].keys[1].joints, before.clips[0].keys[1].joints);
+  ASSERT_EQ(after.clips[0].joints.size(), before.clips[0].joints.size());
+  EXPECT_EQ(after.clips[0].joints[0].rotation.values, before.clips[0].joints[0].rotation.values);
+  EXPECT_EQ(after.clips[0].joints[0].rotation.laws, before.clips[0].joints[0].rotation.laws);
   EXPECT_EQ(after.report.notes, before.report.notes);
   const TriangleSurface surface = unpack_surface(packed(sound_surface()), "file.stl");
   EXPECT_EQ(surface.positions, sound_surface().positions);
@@ -130,13 +136,21 @@ TEST(ImportAnswer, NoValueThatCannotBeIsBelieved) {
       [](Import& i) { i.character.skin.weights[0] = 0.5f; },
       [](Import& i) { i.character.skin.weights[0] += 0.25f, i.character.skin.weights[1] -= 0.25f; },
       [](Import& i) { i.clips[0].name = "\x1b[2J"; },
-      [](Import& i) { i.clips[0].keys.clear(); },
-      [](Import& i) { i.clips[0].keys[0].name = "\n"; },
-      [](Import& i) { i.clips[0].keys[0].time = k_nan; },
-      [](Import& i) { i.clips[0].keys[1].time = i.clips[0].keys[0].time; },
-      [](Import& i) { i.clips[0].keys[0].joints["Nobody"] = {}; },
-      [](Import& i) { i.clips[0].keys[0].joints.begin()->second.rotation = Quat(2, 0, 0, 0); },
-      [](Import& i) { i.clips[0].keys[0].joints.begin()->second.translation = Vec3(0, k_nan, 0); },
+      [](Import& i) { i.clips[0].joints.clear(); },
+      [](Import& i) { i.clips[0].still.pop_back(); },
+      [](Import& i) { i.clips[0].still[0].translation.x() = k_nan; },
+      [](Import& i) { i.clips[0].still[0].rotation = Quat(2, 0, 0, 0); },
+      [](Import& i) { i.clips[0].start = k_nan; },
+      [](Import& i) { i.clips[0].end = i.clips[0].start - 1.0; },
+      [](Import& i) { i.clips[0].joints[0].joint = 1000; },
+      [](Import& i) { i.clips[0].joints[0].joint = -1; },
+      [](Import& i) { i.clips[0].joints[0].rotation.times[0] = k_nan; },
+      [](Import& i) { i.clips[0].joints[0].rotation.times[0] = 1e3; },
+      [](Import& i) { i.clips[0].joints[0].rotation.laws[0] = Law::cubic; },
+      [](Import& i) { i.clips[0].joints[0].rotation.laws.pop_back(); },
+      [](Import& i) { i.clips[0].joints[0].rotation.values[0] *= 2.0; },
+      [](Import& i) { i.clips[0].joints[0].rotation.values.pop_back(); },
+      [](Import& i) { i.clips[0].joints[0].rotation.values[0].x() = k_nan; },
       [](Import& i) { i.report.format = "\r"; },
       [](Import& i) { i.report.up_axis = "\t"; },
       [](Import& i) { i.report.height = k_nan; },

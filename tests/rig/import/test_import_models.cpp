@@ -26,8 +26,8 @@ TEST(ImportModels, AnimatedHumanOfDirectX) {
   EXPECT_EQ(c.skin.slot_count(), 54); // three meshes, one bind
   ASSERT_EQ(import.clips.size(), 1u);
   EXPECT_EQ(import.clips[0].name, "Epileptisch");
-  EXPECT_EQ(import.clips[0].keys.size(), 100u);
-  EXPECT_NEAR(import.clips[0].keys.back().time, 3.3, 1e-6);
+  EXPECT_EQ(key_times(import.clips[0]).size(), 100u);
+  EXPECT_NEAR(import.clips[0].end, 3.3, 1e-6);
   const auto rest = rest_model(c.skeleton);
   const Vec3 toe =
       rest[*c.skeleton.find("B_Toe_Left")].translation - rest[*c.skeleton.find("B_Ankle_Left")].translation;

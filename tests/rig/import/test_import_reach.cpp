@@ -111,9 +111,11 @@ TEST(ImportReach, NoWayOfWritingANameLeadsOut) {
            R"("uri":".//..//secret.bin")",
            R"("uri":["../secret.bin"])",
        })
-    EXPECT_THAT(place.message(uri), AnyOf(HasSubstr("outside of its folder"), HasSubstr("cannot be read"), "")) << uri;
+    EXPECT_THAT(place.message(uri),
+                AnyOf(HasSubstr("outside of its folder"), HasSubstr("found it twice"),
+                      HasSubstr("a name with a zero in it"), HasSubstr("no such file"), HasSubstr("expected a string")))
+        << uri;
   EXPECT_FALSE(watch.saw_it_opened());
-  EXPECT_THAT(place.message(R"("uri":"../secret.bin","uri":"buffer.bin")"), HasSubstr("outside of its folder"));
   fs::remove(place.inside / "buffer.bin");
   fs::create_symlink("../secret.bin", place.inside / "buffer.bin");
   EXPECT_THAT(place.message(R"("uri":"buffer.bin")"), HasSubstr("outside of its folder"));

@@ -10,6 +10,7 @@
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 #include <map>
+#include <set>
 
 using namespace tutu;
 using namespace tutu::rig;
@@ -38,6 +39,18 @@ Matrix4 local_at(const aiNodeAnim& channel, double tick) {
   const auto& s = key_at(channel.mScalingKeys, channel.mNumScalingKeys, tick)->mValue;
   q.Normalize(); // a file may give three digits
   return matrix_of(aiMatrix4x4(s, q, p));
+}
+
+/// s, rising, of the clip's time line.
+std::vector<double> key_times_of(const aiAnimation& animation, const ChannelClip& clip) {
+  const double per_second = animation.mTicksPerSecond == 0.0 ? 25.0 : animation.mTicksPerSecond;
+  std::set<double> times;
+  for (unsigned c = 0; c < animation.mNumChannels; ++c)
+    for (unsigned k = 0; k < animation.mChannels[c]->mNumRotationKeys; ++k)
+      if (const double time = animation.mChannels[c]->mRotationKeys[k].mTime / per_second;
+          time >= clip.start && time <= clip.end)
+        times.insert(time);
+  return {times.begin(), times.end()};
 }
 
 void globals_of(const aiNode& node, const Matrix4& parent, const std::map<std::string, Matrix4>& moved_locals,
@@ -81,7 +94,7 @@ double farthest(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
 }
 
 void compare(const std::string& model) {
-  const Import import = import_character(assimp_model(model), {.max_influences = 8});
+  const Import import = import_character(assimp_model(model), {.max_influences = 8, .rest = RestPose::node});
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   const aiScene* scene = importer.ReadFile(assimp_model(model).string(), aiProcess_Triangulate);
@@ -101,19 +114,17 @@ void compare(const std::string& model) {
   check({}, import.character.skeleton.rest_local, "at rest");
   for (std::size_t a = 0; a < import.clips.size(); ++a) {
     const aiAnimation& animation = *scene->mAnimations[a];
-    const RawClip& clip = import.clips[a];
-    for (const std::size_t k : {std::size_t{0}, clip.keys.size() / 3, clip.keys.size() - 1}) {
+    const ChannelClip& clip = import.clips[a];
+    const std::vector<double> times = key_times_of(animation, clip);
+    for (const std::size_t k : {std::size_t{0}, times.size() / 3, times.size() - 1}) {
       std::map<std::string, Matrix4> locals;
       const double per_second = animation.mTicksPerSecond == 0.0 ? 25.0 : animation.mTicksPerSecond;
       for (unsigned c = 0; c < animation.mNumChannels; ++c)
-        locals[animation.mChannels[c]->mNodeName.C_Str()] =
-            local_at(*animation.mChannels[c], clip.keys[k].time * per_second);
+        locals[animation.mChannels[c]->mNodeName.C_Str()] = local_at(*animation.mChannels[c], times[k] * per_second);
       std::vector<Transform> local = import.character.skeleton.rest_local;
-      for (const auto& [name, key] : clip.keys[k].joints) {
-        const int joint = *import.character.skeleton.find(name);
-        if (key.translation) local[joint].translation = *key.translation;
-        if (key.rotation) local[joint].rotation = *key.rotation;
-      }
+      ChannelClip once = clip;
+      once.extrapolation = Extrapolation::clamp;
+      sample(once, times[k], local);
       check(locals, local, clip.name + " key " + std::to_string(k));
     }
   }

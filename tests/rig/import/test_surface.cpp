@@ -65,8 +65,8 @@ TEST(Surface, APointOutOfTheWorldIsNamed) {
   };
   const auto obj = [](const std::string& number) { return "v 0 0 0\nv 1 0 0\nv 0 1 " + number + "\nf 1 2 3\n"; };
   EXPECT_EQ(message("a.stl", stl("1e30")), "mesh sheet, vertex 4: the point 0 1.00000002e+30 0");
-  EXPECT_EQ(message("a.stl", stl("1e39")), "mesh sheet, vertex 4: the point 0 inf 0");
-  EXPECT_EQ(message("a.ply", ply("-1.1e9")), "vertex 2: the point 0 1 -1.1e+09");
+  EXPECT_EQ(message("a.stl", stl("1e39")), "mesh sheet: a non-finite position of vertex 4");
+  EXPECT_EQ(message("a.ply", ply("-1.1e9")), "mesh mesh 1, vertex 2: the point 0 1 -1.1e+09");
   EXPECT_EQ(message("a.obj", obj("2e9")), "mesh defaultobject, vertex 2: the point 0 1 2e+09");
   EXPECT_EQ(message("a.stl", stl("1e9")), "");
   EXPECT_EQ(message("a.ply", ply("-1e9")), "");

@@ -154,7 +154,7 @@ TEST(SceneWrite, EveryKindOfMotion) {
   const fs::path folder = scratch_folder();
   SceneDescription d = read_scene(write_small_scene(folder));
   const fs::path file = folder / "motion.json", some = folder / "sheet.json"; // any file that is there
-  const auto back = [&](const Motion& motion) {
+  const auto back = [&](const MotionSource& motion) {
     d.motion = motion;
     write_scene(d, file);
     return read_scene(file).motion;

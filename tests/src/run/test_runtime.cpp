@@ -25,7 +25,7 @@ protected:
   ~RuntimeTest() override { std::filesystem::remove_all(folder_); }
 
   const std::vector<Transform>& joints_at(double time) {
-    rig::pose_at(scene_.clip, scene_.character.skeleton, time, local_, joints_);
+    rig::pose_at(scene_.motion, scene_.character.skeleton, time, local_, joints_);
     return joints_;
   }
   GarmentPositions at_rest() const { return {scene_.garments[0].rest_positions}; }
@@ -42,7 +42,7 @@ TEST_F(RuntimeTest, OfAWearerMadeInMemoryHasTheBitsOfASession) {
   wearer.character = scene_.character;
   wearer.proxies = scene_.proxies;
   wearer.put_on(cloth::read_garment(folder_ / "sheet.json"));
-  const auto first = scene_.clip.key(0);
+  const auto first = rig::first_pose(scene_.motion);
   const DrapeResult draped = drape(wearer, first, 0.5, [](int, int) { return true; });
   EXPECT_EQ(draped.positions, drape(scene_, 0.5, [](int, int) { return true; }).positions);
 

@@ -38,7 +38,7 @@ double fastest_of(const Session& session) {
 
 /// The dance's first pose, moved.
 std::vector<Transform> pose_moved(const LoadedScene& scene, const Vec3& by) {
-  const auto first = scene.clip.key(0);
+  const auto first = rig::first_pose(scene.motion);
   std::vector<Transform> local(first.begin(), first.end());
   local[0].translation += by;
   return local;

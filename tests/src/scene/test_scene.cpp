@@ -24,8 +24,8 @@ TEST(Scene, TheDanceIsWhatTheReportHad) {
   const LoadedScene& scene = dance();
   EXPECT_EQ(scene.character.skeleton.joint_count(), 52);
   EXPECT_EQ(scene.character.mesh.parts.size(), 2u) << "two skins put in common";
-  EXPECT_GE(scene.clip.times.size(), 10u);
-  EXPECT_GE(scene.clip.duration(), 8.0);
+  EXPECT_GE(rig::key_times(scene.motion).size(), 10u);
+  EXPECT_GE(scene.motion.duration(), 8.0);
   ASSERT_EQ(scene.garments.size(), 2u);
   EXPECT_EQ(scene.garments[0].particle_count(), 30 * 30);
   EXPECT_EQ(scene.garments[0].seams.size(), 10u) << "sewn from the waist down to a third";
@@ -39,7 +39,7 @@ TEST(Scene, TheDanceIsWhatTheReportHad) {
 }
 
 TEST(Scene, TheClipClosesItsLoop) {
-  const rig::Clip& clip = dance().clip;
+  const auto& clip = std::get<rig::Clip>(dance().motion);
   const auto first = clip.key(0), last = clip.key(static_cast<int>(clip.times.size()) - 1);
   for (int j = 0; j < clip.joint_count; ++j) {
     EXPECT_LT((first[j].translation - last[j].translation).norm(), 1e-9) << j;
@@ -82,7 +82,7 @@ TEST(SceneFile, ReadsEveryFormOfMotion) {
   EXPECT_EQ(std::get<std::string>(std::get<OwnMotion>(read(R"({"animation": "jump"})").motion).animation), "jump");
   const SceneDescription texts = read(R"({"texts": {"translations": "t", "rotations": "r", "times": "k"}})");
   EXPECT_EQ(std::get<rig::ThreeTexts>(texts.motion).times, folder / "k");
-  EXPECT_EQ(texts.max_influences, 8);
+  EXPECT_EQ(texts.import.max_influences, 8);
   EXPECT_FALSE(texts.ground_height.has_value());
   EXPECT_THROW(read(R"({"animation": 2, "clip": "m.json"})"), InputError);
   EXPECT_THROW(read(R"({"animation": 2, "retarget_from": "m.dae"})"), InputError);
@@ -108,9 +108,9 @@ TEST(SceneFile, InterpolationAndSkinningAreChosenInTheScene) {
     return load_scene(read_scene(folder / "s.json"));
   };
   const LoadedScene plain = load(""), other = load(R"(, "interpolation": "cubic", "skinning": "dual_quaternion")");
-  EXPECT_EQ(plain.clip.interpolation, rig::Interpolation::nlerp);
+  EXPECT_EQ(std::get<rig::Clip>(plain.motion).interpolation, rig::Interpolation::nlerp);
   EXPECT_EQ(plain.character.skin.method, rig::Skinning::linear);
-  EXPECT_EQ(other.clip.interpolation, rig::Interpolation::cubic);
+  EXPECT_EQ(std::get<rig::Clip>(other.motion).interpolation, rig::Interpolation::cubic);
   EXPECT_EQ(other.character.skin.method, rig::Skinning::dual_quaternion);
   EXPECT_THROW(load(R"(, "interpolation": "linear")"), InputError);
   EXPECT_THROW(load(R"(, "skinning": "lbs")"), InputError);
