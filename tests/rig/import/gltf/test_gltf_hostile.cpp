@@ -5,6 +5,7 @@
 #include "tests/support/paths.h"
 
 #include <chrono>
+#include <cstdlib>
 #include <gmock/gmock.h>
 #include <random>
 
@@ -270,6 +271,7 @@ TEST(GltfHostile, CountsBeyondAllBytes) {
 }
 
 TEST(GltfHostile, ASmallFileThatDescribesAHugeScene) {
+  ASSERT_EQ(::setenv("TUTU_MEMORY_GIB", "0.25", 1), 0);
   // Ten thousand primitives of 48 MB of zeros each.
   EXPECT_THAT(changed([](json& root, auto&) {
                 root["accessors"].push_back({{"componentType", k_float}, {"count", 4'000'000}, {"type", "VEC3"}});
@@ -291,6 +293,7 @@ TEST(GltfHostile, ASmallFileThatDescribesAHugeScene) {
                 }
               }),
               HasSubstr("what buffers and accessors describe"));
+  ASSERT_EQ(::unsetenv("TUTU_MEMORY_GIB"), 0);
 }
 
 TEST(GltfHostile, NamesThatLeadOutOfTheFolder) {
