@@ -19,6 +19,7 @@ void fuzz_bvh(std::string_view input);
 void fuzz_clip(std::string_view input);
 void fuzz_drape(std::string_view input);
 void fuzz_garment(std::string_view input);
+void fuzz_gltf(std::string_view input);
 void fuzz_joint_limits(std::string_view input);
 void fuzz_proxies(std::string_view input);
 void fuzz_reference(std::string_view input);

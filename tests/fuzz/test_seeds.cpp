@@ -25,6 +25,7 @@ const std::vector<Target> k_targets = {
     {"clip", fuzz_clip},
     {"drape", fuzz_drape},
     {"garment", fuzz_garment},
+    {"gltf", fuzz_gltf},
     {"joint_limits", fuzz_joint_limits},
     {"proxies", fuzz_proxies},
     {"reference", fuzz_reference},

@@ -72,19 +72,22 @@ std::string decode_data_uri(const GltfValue& uri) {
   if (text.find('%') != text.npos) text = plain = decode_percent(text);
   while (text.ends_with('=')) text.remove_suffix(1);
 
-  std::string bytes;
-  bytes.reserve(text.size() / 4 * 3 + 2);
-  std::uint32_t bits = 0;
-  int count = 0;
-  for (const char c : text) {
-    const int digit = k_base64[static_cast<unsigned char>(c)];
-    if (digit < 0) throw uri.error("a character that is none of base64", "data in base64");
-    bits = bits << 6 | static_cast<std::uint32_t>(digit);
-    count += 6;
-    if (count < 8) continue;
-    count -= 8;
-    bytes.push_back(static_cast<char>(bits >> count & 0xff));
+  if (text.size() % 4 == 1) throw uri.error("base64 that is cut off", "data in base64");
+  std::string bytes((text.size() * 3 + 2) / 4, '\0');
+  char* to = bytes.data();
+  int wrong = 0; // below 0 once a character is no digit
+  for (std::size_t i = 0; i < text.size(); i += 4) {
+    std::uint32_t bits = 0;
+    const std::size_t digits = std::min<std::size_t>(4, text.size() - i);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int digit = k < digits ? k_base64[static_cast<unsigned char>(text[i + k])] : 0;
+      wrong |= digit;
+      bits = bits << 6 | static_cast<std::uint32_t>(digit & 63);
+    }
+    for (std::size_t k = 0; k + 1 < digits; ++k) *to++ = static_cast<char>(bits >> (16 - 8 * k) & 0xff);
   }
+  if (wrong < 0) throw uri.error("a character that is none of base64", "data in base64");
+  bytes.resize(static_cast<std::size_t>(to - bytes.data()));
   return bytes;
 }
 

@@ -17,7 +17,7 @@ constexpr std::uint32_t k_json = 0x4e4f534a, k_binary = 0x004e4942; // kinds of 
 
 /// Extensions that may be required: those read, and those that move no vertex. A name that ends in * stands for all
 /// that begin so.
-constexpr std::array<std::string_view, 16> k_fine = {"KHR_mesh_quantization",
+constexpr std::array<std::string_view, 17> k_fine = {"KHR_mesh_quantization",
                                                      "EXT_meshopt_compression",
                                                      "KHR_meshopt_compression",
                                                      "KHR_draco_mesh_compression",
@@ -32,7 +32,8 @@ constexpr std::array<std::string_view, 16> k_fine = {"KHR_mesh_quantization",
                                                      "KHR_xmp*",
                                                      "VRM",
                                                      "VRMC_*",
-                                                     "FB_ngon_encoding"};
+                                                     "FB_ngon_encoding",
+                                                     "KHR_node_*"};
 
 bool is_fine(std::string_view extension) {
   return std::any_of(k_fine.begin(), k_fine.end(), [&](std::string_view fine) {

@@ -56,13 +56,15 @@ Claim claim_of(std::string_view stream) {
   return claim;
 }
 
-void check_claim(const GltfValue& extension, std::string_view stream) {
+void check_claim(const GltfValue& extension, std::string_view stream, GltfMemory& memory) {
   // The entropy coder can repeat itself below a bit a face; a hundred a byte is beyond any mesh.
   constexpr std::uint64_t k_least = 65'536, k_most_a_byte = 128;
+  constexpr std::uint64_t k_bytes_each = 64; // of libdraco's tables, about
   const Claim claim = claim_of(stream);
   if (std::max(claim.faces, claim.points) > k_least + k_most_a_byte * stream.size())
     throw damage(extension, "a stream of " + with_commas(stream.size()) + " bytes that claims " +
                                 with_commas(claim.faces) + " faces and " + with_commas(claim.points) + " vertices");
+  memory.take((claim.faces + claim.points) * k_bytes_each, extension.pointer());
 }
 
 bool is_unsigned(GltfComponent component) {
@@ -89,8 +91,8 @@ void convert(const draco::PointAttribute& attribute, const GltfValue& place, std
   }
 }
 
-std::unique_ptr<draco::Mesh> decode(const GltfValue& extension, std::string_view stream) {
-  check_claim(extension, stream);
+std::unique_ptr<draco::Mesh> decode(const GltfValue& extension, std::string_view stream, GltfMemory& memory) {
+  check_claim(extension, stream, memory);
   draco::DecoderBuffer buffer;
   buffer.Init(stream.data(), stream.size());
   draco::Decoder decoder;
@@ -109,7 +111,7 @@ std::unique_ptr<draco::Mesh> decode(const GltfValue& extension, std::string_view
 
 DracoGeometry::DracoGeometry(const GltfValue& extension, GltfAccessors& accessors)
     : extension_(extension), accessors_(accessors),
-      mesh_(decode(extension, accessors.bytes(extension.at("bufferView")))) {
+      mesh_(decode(extension, accessors.bytes(extension.at("bufferView")), accessors.memory())) {
   accessors_.memory().take(mesh_->num_faces() * sizeof(Triangle), extension.pointer());
   for (draco::FaceIndex f(0); f < mesh_->num_faces(); ++f)
     for (const draco::PointIndex& point : mesh_->face(f))

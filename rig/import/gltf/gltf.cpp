@@ -40,6 +40,7 @@ FileScene read_gltf(const std::filesystem::path& file) {
   GltfMeshes meshes(accessors, skins, scene);
   const std::vector<GltfValue> from = document.root().items("nodes");
   for (const std::size_t node : nodes.drawn) meshes.draw(from[node], nodes.node_of[node]);
+  meshes.note();
   read_animations(accessors, nodes, rotations, scene);
   rotations.note(scene);
   note_outside_textures(document, scene);

@@ -4,8 +4,8 @@
 // EXT_meshopt_compression brings, and leaves accessors, sparse data, meshopt and normalisation to its caller.
 //
 // Read besides the core: KHR_mesh_quantization, EXT_ and KHR_meshopt_compression (streams of version 0),
-// KHR_draco_mesh_compression. A file that requires another extension is refused by its name, unless that is one of
-// materials, textures, lights or of VRM, which move no vertex.
+// KHR_draco_mesh_compression, KHR_node_visibility. A file that requires another extension is refused by its name,
+// unless that is one of materials, textures, lights or of VRM, which move no vertex.
 #pragma once
 
 #include "rig/import/detail/file_scene.h"
@@ -19,8 +19,8 @@ namespace tutu::rig::import_detail {
 /// - Nodes: node 0, without a name, holds the roots of all scenes; the others follow, parent before child, those of the
 ///   default scene first (`scene`, or the first there is, or all roots where a file has no scenes). Nodes without a
 ///   name are "node 7", by the file's index. Cameras and lights are aids.
-/// - Only nodes of the default scene draw. A primitive is a mesh, drawn once a node that holds it, with the node's
-/// skin;
+/// - Only nodes of the default scene draw, and those that KHR_node_visibility hides do not. A primitive is a mesh,
+/// drawn once a node that holds it, with the node's skin;
 ///   the default weights of morph targets are in its positions and normals, and noted. Strips and fans are triangles.
 ///   Of vertices that several primitives share each mesh has those that it uses.
 /// - Animations: each channel by its node. start is 0, end the last key of any channel read. Rotations are unit.

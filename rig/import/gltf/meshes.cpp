@@ -75,7 +75,8 @@ GltfMeshes::Part GltfMeshes::part_of(const GltfValue& primitive, const std::stri
     keep_used_vertices(made.mesh);
   made.mesh.name = name;
   made.mesh.colour = colour_of(primitive);
-  for (std::string& note : made.notes) scene_.notes.push_back(std::move(note));
+  for (const std::string& note : made.notes)
+    if (Left& left = left_out_[note]; ++left.count == 1) left.first_place = made.place;
   const Part part{.mesh = static_cast<int>(scene_.meshes.size()),
                   .has_influences = made.has_influences(),
                   .highest_joint = made.highest_joint,
@@ -83,6 +84,12 @@ GltfMeshes::Part GltfMeshes::part_of(const GltfValue& primitive, const std::stri
                   .place = std::move(made.place)};
   scene_.meshes.push_back(std::move(made.mesh));
   return part;
+}
+
+void GltfMeshes::note() const {
+  for (const auto& [what, left] : left_out_)
+    scene_.notes.push_back((left.count == 1 ? "1 primitive " : std::to_string(left.count) + " primitives ") + what +
+                           " (" + (left.count == 1 ? "" : "the first: ") + left.first_place + ")");
 }
 
 std::array<float, 3> GltfMeshes::colour_of(const GltfValue& primitive) const {

@@ -18,6 +18,8 @@ public:
 
   /// What this node of the file draws, with its skin; `index` is its place among FileScene::nodes.
   void draw(const GltfValue& node, int index);
+  /// What was left out of primitives: one note a kind.
+  void note() const;
 
 private:
   struct Part {
@@ -36,6 +38,11 @@ private:
   FileScene& scene_;
   std::vector<int> users_; ///< [accessor]: primitives whose positions it holds
   std::map<std::pair<std::size_t, std::vector<double>>, std::vector<Part>> parts_;
+  struct Left {
+    std::size_t count = 0;
+    std::string first_place;
+  };
+  std::map<std::string, Left> left_out_; ///< by what is said of it
 };
 
 } // namespace tutu::rig::import_detail

@@ -129,10 +129,14 @@ GltfNodes read_nodes(const GltfDocument& document, GltfRotations& rotations, Fil
     nodes.node_of[index] = static_cast<int>(scene.nodes.size());
     scene.nodes.push_back(std::move(node));
   };
+  std::vector<bool> is_hidden(tree.size(), false); // with all below it [KHR_node_visibility]
   for (const std::size_t root : tree.drawn_roots())
     tree.walk(root, [&](std::size_t node, std::size_t parent) {
       add(node, parent);
-      nodes.drawn.push_back(node);
+      const auto visibility = tree.node(node).extension("KHR_node_visibility");
+      is_hidden[node] =
+          (parent != k_none && is_hidden[parent]) || (visibility && !visibility->flag_or("visible", true));
+      if (!is_hidden[node]) nodes.drawn.push_back(node);
     });
   for (const std::size_t root : tree.all_roots())
     if (nodes.node_of[root] < 0) tree.walk(root, add);

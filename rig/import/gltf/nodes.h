@@ -12,7 +12,7 @@ namespace tutu::rig::import_detail {
 
 struct GltfNodes {
   std::vector<int> node_of;       ///< [glTF's index]: of FileScene::nodes
-  std::vector<std::size_t> drawn; ///< glTF's indices of the default scene's nodes, parent before child
+  std::vector<std::size_t> drawn; ///< glTF's indices of what is visible in the default scene, parent before child
 };
 
 /// Fills FileScene::nodes. Throws InputError on circles, nodes with two parents, transforms that are none.

@@ -26,7 +26,7 @@ public:
 
   GltfPrimitive read(const std::vector<double>& weights) {
     if (!attributes_.find("POSITION")) {
-      made_.notes.push_back(made_.place + " has no positions: nothing of it is drawn");
+      made_.notes.emplace_back("without positions, which draws nothing");
       return std::move(made_);
     }
     made_.mesh.positions = vectors(attribute("POSITION", "VEC3"));
@@ -95,7 +95,7 @@ private:
     const auto is_good = [](const Vec3f& n) { return (n.array().abs() <= static_cast<float>(k_largest_number)).all(); };
     if (std::all_of(made_.mesh.normals.begin(), made_.mesh.normals.end(), is_good)) return;
     made_.mesh.normals.clear();
-    made_.notes.push_back(made_.place + " has normals that are no numbers: left out");
+    made_.notes.emplace_back("whose normals are no numbers, which are left out");
   }
 
   struct Set {
@@ -125,7 +125,7 @@ private:
     }
     if (!made_.mesh.influences.empty()) return;
     made_.mesh.first.clear();
-    made_.notes.push_back(made_.place + " has joints, and no weight above 0");
+    made_.notes.emplace_back("with joints, and no weight above 0");
   }
   Set read_set(const std::string& n) {
     const GltfElements joints = attribute("JOINTS_" + n, "VEC4"), weights = attribute("WEIGHTS_" + n, "VEC4");
@@ -186,8 +186,7 @@ private:
     else std::iota(indices, indices + count, 0u);
     if (count % 3 == 0) return;
     triangles.pop_back();
-    made_.notes.push_back(made_.place + " has " + std::to_string(count) +
-                          " indices, which is no multiple of 3: the last are left out");
+    made_.notes.emplace_back("whose indices are no multiple of 3, of which the last are left out");
   }
   /// [glTF 2.0, 3.7.2.1]
   void read_strip_or_fan(const std::optional<GltfElements>& elements, std::size_t count) {

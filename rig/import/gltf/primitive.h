@@ -16,8 +16,8 @@ struct GltfPrimitive {
   std::string place;
   std::uint32_t highest_joint = 0; ///< with a weight above 0
   std::size_t highest_joint_vertex = 0;
-  std::size_t morphed = 0; ///< targets whose weight is not 0
-  std::vector<std::string> notes;
+  std::size_t morphed = 0;        ///< targets whose weight is not 0
+  std::vector<std::string> notes; ///< without the place: "no positions, which is not drawn"
 
   bool has_influences() const { return !mesh.influences.empty(); }
 };

@@ -147,8 +147,9 @@ public:
   }
   static std::filesystem::path write(const std::filesystem::path& file, const std::string& bytes) {
     std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary | std::ios::trunc)
-        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    std::filesystem::remove(
+        file); // what is cut to nothing and written anew, some file systems bring to the disk at once
+    std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     return file;
   }
 

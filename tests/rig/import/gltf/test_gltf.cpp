@@ -126,6 +126,15 @@ TEST(Gltf, OnlyTheDefaultSceneDraws) {
   EXPECT_EQ(read(body.maker).instances.size(), 2u);
 }
 
+TEST(Gltf, WhatIsHiddenIsNotDrawn) {
+  GltfBody body({});
+  json& nodes = body.maker.root["nodes"];
+  nodes[static_cast<std::size_t>(body.armature_node)]["extensions"]["KHR_node_visibility"]["visible"] = false;
+  EXPECT_THAT(read(body.maker).instances, IsEmpty()); // its children neither
+  nodes[static_cast<std::size_t>(body.armature_node)]["extensions"]["KHR_node_visibility"]["visible"] = true;
+  EXPECT_EQ(read(body.maker).instances.size(), 1u);
+}
+
 TEST(Gltf, CamerasAndLightsAreAids) {
   GltfBody body({});
   for (json node : {json{{"name", "Eye"}, {"camera", 0}},
@@ -329,7 +338,7 @@ TEST(Gltf, WhatIsLeftOutIsNoted) {
   root["meshes"][0]["primitives"].push_back({{"attributes", json::object()}});
   EXPECT_THAT(read(body.maker).notes,
               ElementsAre("EXT_mesh_gpu_instancing is not read: what it draws many times is drawn once",
-                          "/meshes/0/primitives/1 has no positions: nothing of it is drawn",
+                          "1 primitive without positions, which draws nothing (/meshes/0/primitives/1)",
                           "1 texture outside of the file's folder not opened: ../secret.png"));
 }
 
@@ -339,7 +348,8 @@ TEST(Gltf, NormalsThatAreNoNumbersAreLeftOut) {
   body.maker.root["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = body.maker.add_accessor(normals, "VEC3");
   const FileScene scene = read(body.maker);
   EXPECT_THAT(scene.meshes[0].normals, IsEmpty());
-  EXPECT_THAT(scene.notes, Contains(HasSubstr("normals that are no numbers: left out")));
+  EXPECT_THAT(scene.notes,
+              Contains("1 primitive whose normals are no numbers, which are left out (/meshes/0/primitives/0)"));
 }
 
 } // namespace

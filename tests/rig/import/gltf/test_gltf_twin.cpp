@@ -2,12 +2,11 @@
 // model at hand.
 #include "rig/error.h"
 #include "rig/import/gltf/gltf.h"
+#include "tests/rig/import/gltf/compare_twin.h"
 #include "tests/rig/import/gltf/gltf_body.h"
-#include "tests/rig/import/gltf/gltf_twin.h"
 #include "tests/rig/import/gltf/scene_corners.h"
 #include "tests/support/paths.h"
 
-#include <functional>
 #include <gmock/gmock.h>
 
 using namespace tutu;
@@ -18,60 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double k_close = 1e-5; // of the height
-constexpr int k_times = 10;      // a clip
-
-double height_of(const std::vector<Vec3>& points) {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Vec3& p : points) {
-    low = std::min(low, p.y());
-    high = std::max(high, p.y());
-  }
-  return high - low;
-}
-
-double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  if (a.size() != b.size()) return std::numeric_limits<double>::infinity();
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i] - b[i]).norm());
-  return largest;
-}
-
-/// The same of triangles in any order, which may begin at any of their corners: some codecs turn and sort them.
-double farthest_triangle(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
-  if (from.size() != to.size()) return std::numeric_limits<double>::infinity();
-  double largest = 0.0;
-  for (std::size_t i = 0; i < from.size(); i += 3) {
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < to.size(); j += 3)
-      for (std::size_t turn = 0; turn < 3; ++turn) {
-        double distance = 0.0;
-        for (std::size_t k = 0; k < 3; ++k)
-          distance = std::max(distance, (from[i + k] - to[j + (k + turn) % 3]).norm());
-        nearest = std::min(nearest, distance);
-      }
-    largest = std::max(largest, nearest);
-  }
-  return largest;
-}
-
-/// What a reader makes of a file: corners at a time of an animation.
-using Reading = std::function<std::vector<Vec3>(int animation, double time)>;
-
-/// The greatest difference between reading and twin, at rest and at ten times of each animation; of the height.
-double difference(GltfTwin& twin, const Reading& reading) {
-  const std::vector<Vec3> rest = twin.corners(-1, 0.0);
-  const double height = height_of(rest);
-  EXPECT_GT(height, 0.0);
-  double largest = farthest(rest, reading(-1, 0.0));
-  for (std::size_t a = 0; a < twin.animations(); ++a)
-    for (int k = 0; k < k_times; ++k) {
-      const double time = twin.end_of(a) * (k + 0.37) / k_times;
-      largest =
-          std::max(largest, farthest(twin.corners(static_cast<int>(a), time), reading(static_cast<int>(a), time)));
-    }
-  return largest / height;
-}
 double difference(const fs::path& file) {
   GltfTwin twin(file);
   const FileScene scene = read_gltf(file);
@@ -170,8 +115,10 @@ TEST(GltfTwins, SeeADifference) {
   FileScene scene = read_gltf(file);
   const Reading reading = [&](int animation, double time) { return scene_corners(scene, animation, time); };
   EXPECT_LT(difference(twin, reading), k_close);
+  EXPECT_LT(difference(twin, reading, farthest_point), k_close);
   scene.animations[0].nodes[0].translation.values[1].x() += 1e-4;
   EXPECT_GT(difference(twin, reading), k_close);
+  EXPECT_GT(difference(twin, reading, farthest_point), k_close);
 }
 
 /// Every model of these folders that has a skin, or draws anything at all.
