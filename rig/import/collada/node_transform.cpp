@@ -260,7 +260,8 @@ NodeMotion MovingTransform::motion(bool& has_shear) const {
       return pose(time, side, ignored).translation;
     };
     motion.translation =
-        joined(parts, Vec3(constant[0], constant[1], constant[2]), before, tolerance_for(times, translation));
+        joined(parts, Vec3(constant[0], constant[1], constant[2]), before,
+               tolerance_for(times, translation, before * Vec3(constant[0], constant[1], constant[2])));
   }
   return motion;
 }

@@ -3,6 +3,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -119,15 +120,14 @@ private:
 template <typename Value>
 Curve<Value> sampled_values(const std::vector<double>& times, const std::vector<int>& first_cuts,
                             const std::function<Value(double, Side)>& at, double tolerance) {
+  if (std::accumulate(first_cuts.begin(), first_cuts.end(), std::size_t{0}) >= k_most_pieces)
+    throw std::length_error("a curve of too many pieces");
   Sampler<Value> sampler(at, tolerance);
   sampler.pieces().reach(at(times.front(), Side::before)); // what holds before the first key
   for (std::size_t i = 0; i + 1 < times.size(); ++i)
     sampler.interval(times[i], times[i + 1], first_cuts.empty() ? 1 : first_cuts[i]);
   return sampler.pieces().finished(times.back(), at(times.back(), Side::behind));
 }
-
-/// The least that is told apart where the largest number is `largest`.
-double share_of(double largest) { return k_sampled_share * std::max(largest, 1e-12); }
 
 } // namespace
 
@@ -208,10 +208,10 @@ RotationCurve sampled(const std::vector<double>& times, const std::vector<int>& 
   return sampled_values<Vec4>(times, first_cuts, coefficients, tolerance);
 }
 
-double tolerance_for(const std::vector<double>& times, const std::function<Vec3(double, Side)>& at) {
-  double largest = 0.0;
+double tolerance_for(const std::vector<double>& times, const std::function<Vec3(double, Side)>& at, const Vec3& rest) {
+  double largest = rest.norm();
   for (const double time : times) largest = std::max(largest, at(time, Side::behind).norm());
-  return share_of(largest);
+  return k_sampled_share * std::max(largest, 1e-12);
 }
 
 int cuts_for(double turn) {
@@ -219,21 +219,27 @@ int cuts_for(double turn) {
   return static_cast<int>(std::clamp(std::ceil(turn / k_eighth), 1.0, static_cast<double>(k_most_pieces)));
 }
 
+void drop_if_idle(VectorCurve& curve, const Vec3& rest, double tolerance) {
+  if (curve.values.size() == 1 && distance(curve.values[0], rest) <= k_share_of_rest * tolerance) curve = {};
+}
+
+void drop_if_idle(RotationCurve& curve, const Quat& rest) {
+  if (curve.values.size() == 1 && distance(curve.values[0], Vec4(rest.coeffs())) <= k_share_of_rest * k_sampled_angle)
+    curve = {};
+}
+
 PoseCurves sampled_pose(const std::vector<double>& times, const std::vector<int>& first_cuts,
                         const std::function<Pose(double, Side)>& pose, const Pose& rest) {
   const std::function<Vec3(double, Side)> translation = [&](double t, Side side) { return pose(t, side).translation; };
   const std::function<Quat(double, Side)> rotation = [&](double t, Side side) { return pose(t, side).rotation; };
   const std::function<Vec3(double, Side)> scale = [&](double t, Side side) { return pose(t, side).scale; };
-  const double length = std::max(tolerance_for(times, translation), share_of(rest.translation.norm()));
+  const double length = tolerance_for(times, translation, rest.translation);
+  const double share = tolerance_for(times, scale, rest.scale);
   PoseCurves curves = {sampled(times, first_cuts, translation, length),
-                       sampled(times, first_cuts, rotation, k_sampled_angle),
-                       sampled(times, first_cuts, scale, tolerance_for(times, scale))};
-  const auto drop_if_at_rest = [](auto& curve, const auto& value, double nearness) {
-    if (curve.values.size() == 1 && distance(curve.values[0], value) <= nearness) curve = {};
-  };
-  drop_if_at_rest(curves.translation, rest.translation, k_share_of_rest * length);
-  drop_if_at_rest(curves.rotation, Vec4(rest.rotation.coeffs()), k_share_of_rest * k_sampled_angle);
-  drop_if_at_rest(curves.scale, rest.scale, k_share_of_rest * share_of(rest.scale.norm()));
+                       sampled(times, first_cuts, rotation, k_sampled_angle), sampled(times, first_cuts, scale, share)};
+  drop_if_idle(curves.translation, rest.translation, length);
+  drop_if_idle(curves.rotation, rest.rotation);
+  drop_if_idle(curves.scale, rest.scale, share);
   return curves;
 }
 

@@ -151,11 +151,10 @@ private:
 
   void add_motion(std::int64_t id, const FbxModel& model, FileAnimation& animation) {
     const FbxObject& object = *document_.object(id);
-    if (!model.moves()) return;
     const std::string name = plain_text(object.name);
     const int node = nodes_.node_of(id);
     if (node < 0) {
-      note_once(lost_, name);
+      if (model.moves()) note_once(lost_, name);
       return;
     }
     for (const FbxTrack* track : {&model.translation, &model.rotation, &model.scale})
@@ -167,7 +166,7 @@ private:
     if (model.rotation.moves() && document_.number(object, "QuaternionInterpolate", 0.0) != 0.0)
       note_once(slerped_, name);
     if (is_detached(object)) note_once(detached_, name);
-    NodeMotion motion = motion_of(model);
+    NodeMotion motion = motion_of(model, model_of(document_, object));
     motion.node = node;
     if (!motion.translation.empty() || !motion.rotation.empty() || !motion.scale.empty())
       animation.nodes.push_back(std::move(motion));
