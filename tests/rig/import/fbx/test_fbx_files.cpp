@@ -53,7 +53,8 @@ TEST(FbxFiles, OtherVersionsAndOtherFilesAreNotRead) {
 
 TEST(FbxFiles, HostileLengthsAndCounts) {
   const std::string text = small_file({});
-  EXPECT_EQ(unread(with(text, "KeyTime: *3", "KeyTime: *1000000000000")), "an array that is not as long as it says");
+  EXPECT_EQ(unread(with(text, "KeyTime: *3", "KeyTime: *1000000000")), "an array that is not as long as it says");
+  EXPECT_EQ(unread(with(text, "KeyTime: *3", "KeyTime: *99999999999")), "an array without a length");
   EXPECT_EQ(unread(with(text, "KeyTime: *3", "KeyTime: *x")), "an array without a length");
   EXPECT_EQ(unread(with(text, "KeyTime: *3", "KeyTime: 3")), "a curve with another number of times than of values");
   EXPECT_EQ(unread(with(text, "KeyAttrRefCount", "KeyAttrRefC")), "a curve without KeyAttrRefCount");

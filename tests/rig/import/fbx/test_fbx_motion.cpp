@@ -17,8 +17,8 @@ namespace {
 
 constexpr double k_degree = std::numbers::pi / 180.0;
 constexpr std::int32_t k_constant = 0x2, k_linear = 0x4, k_cubic = 0x8, k_next = 0x100, k_auto = 0x100, k_tcb = 0x200,
-                       k_user = 0x400, k_broken = 0x800, k_time_independent = 0x2000, k_clamp = 0x4000,
-                       k_weighted = 0x3000000;
+                       k_user = 0x400, k_broken = 0x800, k_level = 0x1000, k_time_independent = 0x2000,
+                       k_clamp = 0x4000, k_weighted = 0x3000000;
 
 const std::vector<FileNode> k_nodes = {{.name = "RootNode"}, {.name = "Joint", .parent = 0}};
 
@@ -117,6 +117,8 @@ TEST(FbxMotion, SlopesThatTheFileLeavesToItsReader) {
   EXPECT_NEAR(slope_at_one(k_tcb, 2), 0.5 * (2 + 0.5), 1e-4);
   EXPECT_NEAR(slope_at_one(k_tcb, 2, as_word(0.5)), 0.25 * (2 + 0.5), 1e-4); // tension
   EXPECT_NEAR(slope_at_one(k_user, 2, as_word(7)), 7, 1e-3);
+  EXPECT_NEAR(slope_at_one(k_user | k_level, 2, as_word(7)), 7, 1e-3);
+  EXPECT_NEAR(slope_at_one(k_user | k_level, 3, as_word(7)), 0, 1e-3); // the next key's value
 }
 
 TEST(FbxMotion, EndsOfWhatIsLeftToItsReader) {
