@@ -33,10 +33,10 @@ Pose pose_of(const Eigen::Affine3d& map, bool& has_shear);
 VectorCurve joined(const std::array<const ScalarCurve*, 3>& curves, const Vec3& constant, const Eigen::Affine3d& map,
                    double tolerance);
 
-/// Straight pieces (of rotations arcs), cut in halves until they are nearer than `tolerance` to the value at the
-/// quarters of each (of rotations rad). Pieces that stay within a thousandth of it are held. `first_cuts`, one an
-/// interval or empty, says into how many pieces it is cut at least: a value that comes round to where it was would else
-/// pass for one that rests. Throws std::length_error beyond k_most_pieces.
+/// Pieces that are straight (of rotations arcs) or else cubic, cut in halves until they are nearer than `tolerance` to
+/// the value at the sixths of each (of rotations rad). Pieces that stay within a thousandth of it are held.
+/// `first_cuts`, one an interval or empty, says into how many pieces it is cut at least: a value that comes round to
+/// where it was would else pass for one that rests. Throws std::length_error beyond k_most_pieces.
 inline constexpr std::size_t k_most_pieces = 1'000'000; ///< of a curve: some hundred megabytes
 VectorCurve sampled(const std::vector<double>& times, const std::vector<int>& first_cuts,
                     const std::function<Vec3(double time, Side side)>& at, double tolerance);

@@ -89,8 +89,7 @@ TEST_P(FbxForms, SayTheSameLaws) {
     EXPECT_NEAR(x_at(take, time), expected, time >= 4 && time < 6 ? 2e-4 : 1e-6) << time;
   }
   EXPECT_EQ(x_at(take, 9), 4);
-  const VectorCurve& kept = take.nodes[0].translation;
-  EXPECT_EQ(std::count(kept.laws.begin(), kept.laws.end(), Law::cubic), 2); // what is no cubic of time is sampled
+  EXPECT_LT(take.nodes[0].translation.times.size(), 60u); // but one stretch is kept as it is
 }
 
 std::string form_name(const ::testing::TestParamInfo<FbxForm>& info) {
