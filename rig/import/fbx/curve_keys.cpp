@@ -130,14 +130,14 @@ Slopes slopes_at(const ScalarCurve& keys, const std::vector<Attributes>& all, st
 
 } // namespace
 
-ScalarCurve curve_keys(const FbxElement& curve, const FbxTree& tree) {
+ScalarCurve curve_keys(const FbxElement& curve, const FbxTree& tree, double ticks_per_second) {
   const std::vector<std::int64_t> times = integers_of(required(curve, "KeyTime"));
   const std::vector<double> values = reals_of(required(curve, "KeyValueFloat"));
   if (times.size() != values.size()) throw FbxUnreadable("a curve with another number of times than of values");
   const std::vector<Attributes> all = attributes(curve, tree, times.size());
   ScalarCurve keys(times.size());
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    keys[k].time = static_cast<double>(times[k]) / k_ticks_per_second;
+    keys[k].time = static_cast<double>(times[k]) / ticks_per_second;
     keys[k].value = values[k];
     if (!(std::abs(values[k]) <= k_largest_number)) throw FbxUnreadable("a curve with a key that is no number");
     if (k > 0 && times[k] < times[k - 1]) throw FbxUnreadable("a curve with key times that fall");

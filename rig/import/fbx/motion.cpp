@@ -144,7 +144,7 @@ private:
       for (const FbxConnection& part : document_.parts_of(curve_node.id)) {
         const FbxObject* curve = document_.object(part.part);
         if (!curve || curve->kind != "AnimationCurve" || part.property != k_axes[axis]) continue;
-        track.curves[axis] = curve_keys(*curve->element, document_.tree());
+        track.curves[axis] = curve_keys(*curve->element, document_.tree(), document_.ticks_per_second());
         if (!track.curves[axis].empty() && is_extrapolated(*curve->element))
           note_once(extrapolated_, plain_text(model.name));
       }
@@ -194,8 +194,8 @@ private:
     const std::optional<std::int64_t> stop = document_.own_integer(stack, "LocalStop");
     const std::int64_t start = document_.own_integer(stack, "LocalStart").value_or(0); // what is 0 may be left out
     if (stop && *stop > start) {
-      animation.start = static_cast<double>(start) / k_ticks_per_second;
-      animation.end = static_cast<double>(*stop) / k_ticks_per_second;
+      animation.start = static_cast<double>(start) / document_.ticks_per_second();
+      animation.end = static_cast<double>(*stop) / document_.ticks_per_second();
       return;
     }
     animation.start = std::min(first_.value_or(0.0), 0.0);

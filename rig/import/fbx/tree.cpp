@@ -78,7 +78,7 @@ bool is_of_use(std::string_view parent, std::string_view name) {
   const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
     return std::ranges::find(names, name) != names.end();
   };
-  if (parent.empty()) return is_one_of({"Definitions", "Objects", "Connections"});
+  if (parent.empty()) return is_one_of({"FBXHeaderExtension", "Definitions", "Objects", "Connections"});
   if (parent != "Objects") return true;
   return is_one_of({"Model", "AnimationStack", "AnimationLayer", "AnimationCurveNode", "AnimationCurve"});
 }

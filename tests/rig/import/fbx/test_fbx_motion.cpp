@@ -263,6 +263,26 @@ TEST(FbxMotion, TakesAndTheirTimeLines) {
   EXPECT_THAT(found, ElementsAre("keys 0 3", "early -2 3", "given 0.5 4", "stop 0 2", "wrong 0 3"));
 }
 
+TEST(FbxMotion, TheUnitOfTimeIsWhatTheFileSays) {
+  FbxTestFile file;
+  const std::int64_t joint = file.model("Joint", 0, {});
+  const double share = 141120000.0 / static_cast<double>(k_ticks);
+  const FbxTestCurve curve = {{0, 2 * share}, {0, 1}, {k_linear, k_linear}};
+  file.move(file.layer(file.take("Take")), joint, "Lcl Rotation", {&curve, nullptr, nullptr});
+  for (const auto& [definition, end] : {std::pair(0, 2.0), std::pair(127, 2 * share)})
+    for (const bool is_text : {true, false}) {
+      const FbxTestElement header = {
+          "FBXHeaderExtension",
+          {},
+          {{"FBXVersion", {std::int64_t{7700}}}, {"OtherFlags", {}, {{"TCDefinition", {std::int64_t{definition}}}}}}};
+      const std::string bytes = fbx_bytes(
+          {header, {"Objects", {}, file.objects}, {"Connections", {}, file.connections}}, {is_text, 7700, false});
+      const FbxMotion motion = fbx_motion(is_text ? bytes.substr(bytes.find("; Objects")) : bytes, k_nodes);
+      ASSERT_EQ(motion.animations.size(), 1u) << motion.unread;
+      EXPECT_NEAR(motion.animations[0].end, end, 1e-6);
+    }
+}
+
 TEST(FbxMotion, WhatIsLeftOutIsNoted) {
   FbxTestFile file;
   const std::int64_t parent = file.model("Parent", 0, {fbx_property("Lcl Scaling", {2, 2, 2})});
