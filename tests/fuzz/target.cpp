@@ -1,5 +1,6 @@
 #include "tests/fuzz/target.h"
 
+#include "rig/error.h"
 #include "tests/support/capsule_body.h"
 
 #include <cmath>
@@ -88,6 +89,29 @@ void require(bool holds, const char* promise) {
 
 void require_poses(std::span<const Transform> transforms, const char* promise) {
   for (const Transform& t : transforms) require(is_finite(t) && std::abs(t.rotation.norm() - 1.0) < 1e-6, promise);
+}
+
+void require_motion(const rig::import_detail::FileAnimation& animation, int nodes) {
+  require(animation.start <= animation.end, "a clip ends behind its start");
+  int last = -1;
+  for (const rig::import_detail::NodeMotion& motion : animation.nodes) {
+    require(motion.node > last && motion.node < nodes, "each node moves once");
+    last = motion.node;
+    try {
+      rig::check(motion.translation, "", "");
+      rig::check(motion.rotation, "", "");
+      rig::check(motion.scale, "", "");
+    } catch (const InputError&) {
+      require(false, "what is read holds");
+    }
+    for (const double time : {animation.start, 0.5 * (animation.start + animation.end), animation.end}) {
+      if (!motion.translation.empty())
+        require(rig::value_at(motion.translation, time).allFinite(), "a translation is one");
+      if (!motion.scale.empty()) require(rig::value_at(motion.scale, time).allFinite(), "a scale is one");
+      if (!motion.rotation.empty())
+        require(std::abs(rig::value_at(motion.rotation, time).norm() - 1.0) < 1e-6, "a rotation is one");
+    }
+  }
 }
 
 const rig::Character& small_character() {

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "rig/character.h"
+#include "rig/import/detail/file_scene.h"
 
 #include <filesystem>
 #include <span>
@@ -17,7 +18,9 @@ void fuzz_answer(std::string_view input);
 void fuzz_autosave(std::string_view input);
 void fuzz_bvh(std::string_view input);
 void fuzz_clip(std::string_view input);
+void fuzz_collada(std::string_view input);
 void fuzz_drape(std::string_view input);
+void fuzz_fbx(std::string_view input);
 void fuzz_garment(std::string_view input);
 void fuzz_gltf(std::string_view input);
 void fuzz_joint_limits(std::string_view input);
@@ -37,6 +40,9 @@ std::string text_of(const std::filesystem::path& file);
 /// Aborts, with the promise in words, where it does not hold.
 void require(bool holds, const char* promise);
 void require_poses(std::span<const Transform> transforms, const char* promise); ///< finite, with unit rotations
+
+/// Each of nodes 0 to `nodes` - 1 moves once, with curves that hold and have values that are numbers.
+void require_motion(const rig::import_detail::FileAnimation& animation, int nodes);
 
 /// Six joints with Mixamo names, in a capsule for a body, 1 m from its joints' origin.
 const rig::Character& small_character();

@@ -26,7 +26,13 @@ void check_skin(const ColladaDocument& document, const pugi::xml_node& skin) {
   std::size_t stride = 0;
   for (const pugi::xml_node input : weights.children("input")) stride = std::max(stride, offset_of(input) + 1);
   const auto read = [&](const pugi::xml_node& input) {
-    return Input{offset_of(input), source_array(document, document.referred(input.attribute("source").value()))};
+    const pugi::xml_node source = document.referred(input.attribute("source").value());
+    const std::string_view accessed = source.child("technique_common").child("accessor").attribute("source").value();
+    for (const std::string_view id :
+         {std::string_view(source.attribute("id").value()), accessed.substr(accessed.starts_with('#'))})
+      if (document.is_twice(id))
+        throw InputError(document.file(), place, "two elements of the id " + shown(id), "ids of their own");
+    return Input{offset_of(input), source_array(document, source)};
   };
   const Input joint = read(joint_input), weight = read(weight_input);
   for (std::size_t i = 0; i < weight.values.count; ++i) {
@@ -36,7 +42,7 @@ void check_skin(const ColladaDocument& document, const pugi::xml_node& skin) {
       throw InputError(document.file(), place, "weight " + shown(word), "a finite weight, not negative");
   }
   std::size_t i = 0;
-  for (const std::string_view word : words(weights.child("v").child_value())) {
+  for (const std::string_view word : words_of(weights.child("v"))) {
     const std::size_t offset = i++ % stride;
     const bool is_joint = offset == joint.offset;
     if (!is_joint && offset != weight.offset) continue;

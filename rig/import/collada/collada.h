@@ -11,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace pugi {
@@ -32,6 +33,7 @@ public:
   pugi::xml_node root() const;                         ///< <COLLADA>, or no element
   pugi::xml_node element(std::string_view id) const;   ///< the first of this id, or none
   pugi::xml_node referred(std::string_view uri) const; ///< "#id"; none for what is elsewhere
+  bool is_twice(std::string_view id) const { return twice_.contains(id); }
 
 private:
   void index();
@@ -39,10 +41,12 @@ private:
   std::string file_;
   std::shared_ptr<pugi::xml_document> tree_;
   std::unordered_map<std::string_view, const void*> by_id_; ///< pugi's node handles; the keys are in the tree
+  std::unordered_set<std::string_view> twice_;              ///< ids
 };
 
-/// Throw InputError on joint and weight indices out of range, on weights that are negative or no number, and on
-/// geometry, skins or scenes in another document or outside of the file's folder.
+/// Throw InputError: on joint and weight indices out of range, on weights that are negative or no number, on arrays of
+/// a skin whose id another element has too (of which one is taken here, perhaps the other elsewhere); and on geometry,
+/// skins or scenes in another document or outside of the file's folder.
 void check_skins(const ColladaDocument& document);
 void check_references(const ColladaDocument& document);
 

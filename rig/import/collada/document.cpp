@@ -36,8 +36,8 @@ ColladaDocument::ColladaDocument(const std::string& file, std::string_view text)
 void ColladaDocument::index() {
   int depth = 0;
   for (pugi::xml_node node = tree_->first_child(); node;) {
-    if (const pugi::xml_attribute id = node.attribute("id"))
-      by_id_.emplace(std::string_view(id.value()), node.internal_object());
+    const std::string_view id = node.attribute("id").value();
+    if (!id.empty() && !by_id_.emplace(id, node.internal_object()).second) twice_.insert(id);
     if (node.first_child()) {
       if (++depth > k_deepest)
         throw InputError(file_, "", "elements more than " + std::to_string(k_deepest) + " deep in each other",

@@ -132,7 +132,7 @@ std::vector<TransformElement> transform_elements(const ColladaDocument& document
     const Kind* kind = kind_of(child);
     if (!kind) continue;
     TransformElement element{kind->kind, child.attribute("sid").value(), {}};
-    const std::vector<std::string_view> text = words(child.child_value());
+    const std::vector<std::string_view> text = words_of(child);
     for (const std::string_view word : text) {
       const std::optional<double> number = number_of(word);
       if (number && std::abs(*number) <= k_largest_number) element.numbers.push_back(*number);
@@ -260,7 +260,8 @@ NodeMotion MovingTransform::motion(bool& has_shear) const {
       return pose(time, side, ignored).translation;
     };
     motion.translation =
-        joined(parts, Vec3(constant[0], constant[1], constant[2]), before, tolerance_for(times, translation));
+        joined(parts, Vec3(constant[0], constant[1], constant[2]), before,
+               tolerance_for(times, translation, before * Vec3(constant[0], constant[1], constant[2])));
   }
   return motion;
 }

@@ -20,6 +20,16 @@ std::vector<std::string_view> words(std::string_view text) {
   return found;
 }
 
+std::vector<std::string_view> words_of(const pugi::xml_node& element) {
+  std::vector<std::string_view> found;
+  for (const pugi::xml_node piece : element.children()) {
+    if (piece.type() != pugi::node_pcdata && piece.type() != pugi::node_cdata) continue;
+    const std::vector<std::string_view> more = words(piece.value());
+    found.insert(found.end(), more.begin(), more.end());
+  }
+  return found;
+}
+
 std::optional<double> number_of(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0.0;
@@ -55,7 +65,7 @@ SourceArray source_array(const ColladaDocument& document, const pugi::xml_node& 
   for (const char* kind : {"float_array", "Name_array", "IDREF_array", "int_array", "SIDREF_array"})
     if (!array) array = source.child(kind);
   SourceArray result;
-  result.words = words(array.child_value());
+  result.words = words_of(array);
   result.count = result.words.size();
   if (!accessor) return result;
   result.stride = std::max<std::size_t>(index_attribute(accessor, "stride", 1), 1);

@@ -17,6 +17,8 @@ std::string shown(std::string_view text);
 
 /// The words between blanks; they point into the text.
 std::vector<std::string_view> words(std::string_view text);
+/// Those of an element's own text, which comments may part.
+std::vector<std::string_view> words_of(const pugi::xml_node& element);
 /// A number as XML Schema and the C library write it; none where the word is no number. May be infinite or NaN.
 std::optional<double> number_of(std::string_view word);
 /// A whole number from 0 on.

@@ -3,8 +3,10 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
+#include <type_traits>
 
 namespace tutu::rig::import_detail {
 namespace {
@@ -19,11 +21,33 @@ double distance(const Vec4& a, const Vec4& b) { return Quat(a).angularDistance(Q
 Vec3 between(const Vec3& a, const Vec3& b, double s) { return a + s * (b - a); }
 Vec4 between(const Vec4& a, const Vec4& b, double s) { return Quat(a).slerp(s, Quat(b)).coeffs(); }
 
+/// Of the two signs of a rotation that which is nearer to another.
+const Vec3& aligned(const Vec3&, const Vec3& value) { return value; }
+Vec4 aligned(const Vec4& to, const Vec4& value) { return to.dot(value) < 0.0 ? Vec4(-value) : value; }
+
+/// Slopes over the whole way, s in [0, 1]; of rotations normalised, as a curve does it.
+template <typename Value>
+Value cubic_between(const Value& a, const Value& b, const Value& leaving, const Value& arriving, double s) {
+  const double r = 1.0 - s;
+  const Value result = a + (s * s * (3.0 - 2.0 * s)) * (b - a) + (s * r * r) * leaving - (s * s * r) * arriving;
+  if constexpr (std::is_same_v<Value, Vec4>) return result.normalized();
+  return result;
+}
+
+/// May a curve have it? (Between keys that are next to one time it may not.)
+template <typename Value> bool is_slope(const Value& slope) { return (slope.array().abs() <= k_largest_number).all(); }
+
 /// Puts pieces of a curve one behind the other: a key where each starts, two where one does not start where the last
 /// has ended.
 template <typename Value> class Pieces {
 public:
   explicit Pieces(double rest) : rest_(rest) {}
+
+  /// A value with the sign in which the curve goes on.
+  Value aligned(const Value& value) const {
+    if (reached_) return import_detail::aligned(*reached_, value);
+    return curve_.empty() ? value : import_detail::aligned(curve_.values.back(), value);
+  }
 
   void start(double time, const Value& value, Law law, const Value& leaving = Value::Zero()) {
     if (reached_ && distance(*reached_, value) > rest_) {
@@ -75,39 +99,51 @@ public:
 
   void interval(double from, double to, int cuts) {
     const double count = static_cast<double>(std::max(cuts, 1));
-    Value start = at_(from, Side::behind);
+    Value start = pieces_.aligned(at_(from, Side::behind));
     double time = from;
     for (int cut = 1; cut <= std::max(cuts, 1); ++cut) {
-      const bool is_last = cut >= cuts;
-      const double next = is_last ? to : from + (to - from) * (static_cast<double>(cut) / count);
-      const Value end = at_(next, Side::before);
-      piece(time, start, next, end, 0);
-      start = end;
+      const double next = cut >= cuts ? to : from + (to - from) * (static_cast<double>(cut) / count);
+      start = piece(time, start, next, at_(next, Side::before), 0);
       time = next;
     }
   }
 
 private:
-  void piece(double from, const Value& start, double to, const Value& end, int halvings) {
+  /// Returns the end as it was kept: of a rotation with one of its two signs.
+  Value piece(double from, const Value& start, double to, const Value& raw_end, int halvings) {
     if (++tried_ > 4 * k_most_pieces) throw std::length_error("a curve of too many pieces");
-    const double middle = 0.5 * (from + to);
-    const Value quarters[] = {at_(0.5 * (from + middle), Side::behind), at_(middle, Side::behind),
-                              at_(0.5 * (middle + to), Side::behind)};
-    double moved = distance(start, end), bent = 0.0;
-    for (int q = 0; q < 3; ++q) {
-      moved = std::max(moved, distance(start, quarters[q]));
-      bent = std::max(bent, distance(between(start, end, 0.25 * (q + 1)), quarters[q]));
+    const double h = to - from, middle = 0.5 * (from + to);
+    Value sixths[7] = {start, start, start, start, start, start, start};
+    for (int i = 1; i < 6; ++i) sixths[i] = aligned(sixths[i - 1], at_(from + h * (i / 6.0), Side::behind));
+    const Value& end = sixths[6] = aligned(sixths[5], raw_end);
+
+    // The cubic through the ends and the thirds, by its slopes over the whole piece.
+    const Value leaving = 0.5 * (-11.0 * start + 18.0 * sixths[2] - 9.0 * sixths[4] + 2.0 * end);
+    const Value arriving = 0.5 * (11.0 * end - 18.0 * sixths[4] + 9.0 * sixths[2] - 2.0 * start);
+    double moved = 0.0, bent = 0.0, off = 0.0;
+    for (int i = 1; i <= 6; ++i) {
+      const double s = i / 6.0;
+      moved = std::max(moved, distance(start, sixths[i]));
+      bent = std::max(bent, distance(between(start, end, s), sixths[i]));
+      off = std::max(off, distance(cubic_between(start, end, leaving, arriving, s), sixths[i]));
     }
     if (moved <= rest()) {
       pieces_.start(from, start, Law::step);
-    } else if (bent <= tolerance_ || halvings == k_most_halvings || !(middle > from && middle < to)) {
+      return end;
+    }
+    const bool is_as_short_as_can_be = halvings == k_most_halvings || !(middle > from && middle < to);
+    if (bent <= tolerance_ || is_as_short_as_can_be) {
       pieces_.start(from, start, Law::linear);
       pieces_.reach(end);
-    } else {
-      const Value half = quarters[1];
-      piece(from, start, middle, half, halvings + 1);
-      piece(middle, half, to, end, halvings + 1);
+      return end;
     }
+    if (off <= tolerance_ && is_slope(leaving / h) && is_slope(arriving / h)) {
+      pieces_.start(from, start, Law::cubic, leaving / h);
+      pieces_.reach(end, arriving / h);
+      return end;
+    }
+    const Value half = piece(from, start, middle, sixths[3], halvings + 1);
+    return piece(middle, half, to, raw_end, halvings + 1);
   }
 
   const At& at_;
@@ -119,15 +155,14 @@ private:
 template <typename Value>
 Curve<Value> sampled_values(const std::vector<double>& times, const std::vector<int>& first_cuts,
                             const std::function<Value(double, Side)>& at, double tolerance) {
+  if (std::accumulate(first_cuts.begin(), first_cuts.end(), std::size_t{0}) >= k_most_pieces)
+    throw std::length_error("a curve of too many pieces");
   Sampler<Value> sampler(at, tolerance);
   sampler.pieces().reach(at(times.front(), Side::before)); // what holds before the first key
   for (std::size_t i = 0; i + 1 < times.size(); ++i)
     sampler.interval(times[i], times[i + 1], first_cuts.empty() ? 1 : first_cuts[i]);
-  return sampler.pieces().finished(times.back(), at(times.back(), Side::behind));
+  return sampler.pieces().finished(times.back(), sampler.pieces().aligned(at(times.back(), Side::behind)));
 }
-
-/// The least that is told apart where the largest number is `largest`.
-double share_of(double largest) { return k_sampled_share * std::max(largest, 1e-12); }
 
 } // namespace
 
@@ -182,14 +217,15 @@ VectorCurve joined(const std::array<const ScalarCurve*, 3>& curves, const Vec3& 
       is_held &= law == ScalarKey::Law::step || law == ScalarKey::Law::step_next;
       is_exact &= is_polynomial(*curve, middle);
     }
-    if (!is_exact) {
+    const Vec3 leaving = is_curved && is_exact ? slope(from, Side::behind) : Vec3::Zero();
+    const Vec3 arriving = is_curved && is_exact ? slope(to, Side::before) : Vec3::Zero();
+    if (!is_exact || !is_slope(leaving) || !is_slope(arriving)) {
       sampler.interval(from, to, 1);
     } else if (is_held) {
       pieces.start(from, at(from, Side::behind), Law::step);
     } else {
-      pieces.start(from, at(from, Side::behind), is_curved ? Law::cubic : Law::linear,
-                   is_curved ? slope(from, Side::behind) : Vec3::Zero());
-      pieces.reach(at(to, Side::before), is_curved ? slope(to, Side::before) : Vec3::Zero());
+      pieces.start(from, at(from, Side::behind), is_curved ? Law::cubic : Law::linear, leaving);
+      pieces.reach(at(to, Side::before), arriving);
     }
   }
   return pieces.finished(times.back(), at(times.back(), Side::behind));
@@ -208,10 +244,10 @@ RotationCurve sampled(const std::vector<double>& times, const std::vector<int>& 
   return sampled_values<Vec4>(times, first_cuts, coefficients, tolerance);
 }
 
-double tolerance_for(const std::vector<double>& times, const std::function<Vec3(double, Side)>& at) {
-  double largest = 0.0;
+double tolerance_for(const std::vector<double>& times, const std::function<Vec3(double, Side)>& at, const Vec3& rest) {
+  double largest = rest.norm();
   for (const double time : times) largest = std::max(largest, at(time, Side::behind).norm());
-  return share_of(largest);
+  return k_sampled_share * std::max(largest, 1e-12);
 }
 
 int cuts_for(double turn) {
@@ -219,21 +255,27 @@ int cuts_for(double turn) {
   return static_cast<int>(std::clamp(std::ceil(turn / k_eighth), 1.0, static_cast<double>(k_most_pieces)));
 }
 
+void drop_if_idle(VectorCurve& curve, const Vec3& rest, double tolerance) {
+  if (curve.values.size() == 1 && distance(curve.values[0], rest) <= k_share_of_rest * tolerance) curve = {};
+}
+
+void drop_if_idle(RotationCurve& curve, const Quat& rest) {
+  if (curve.values.size() == 1 && distance(curve.values[0], Vec4(rest.coeffs())) <= k_share_of_rest * k_sampled_angle)
+    curve = {};
+}
+
 PoseCurves sampled_pose(const std::vector<double>& times, const std::vector<int>& first_cuts,
                         const std::function<Pose(double, Side)>& pose, const Pose& rest) {
   const std::function<Vec3(double, Side)> translation = [&](double t, Side side) { return pose(t, side).translation; };
   const std::function<Quat(double, Side)> rotation = [&](double t, Side side) { return pose(t, side).rotation; };
   const std::function<Vec3(double, Side)> scale = [&](double t, Side side) { return pose(t, side).scale; };
-  const double length = std::max(tolerance_for(times, translation), share_of(rest.translation.norm()));
+  const double length = tolerance_for(times, translation, rest.translation);
+  const double share = tolerance_for(times, scale, rest.scale);
   PoseCurves curves = {sampled(times, first_cuts, translation, length),
-                       sampled(times, first_cuts, rotation, k_sampled_angle),
-                       sampled(times, first_cuts, scale, tolerance_for(times, scale))};
-  const auto drop_if_at_rest = [](auto& curve, const auto& value, double nearness) {
-    if (curve.values.size() == 1 && distance(curve.values[0], value) <= nearness) curve = {};
-  };
-  drop_if_at_rest(curves.translation, rest.translation, k_share_of_rest * length);
-  drop_if_at_rest(curves.rotation, Vec4(rest.rotation.coeffs()), k_share_of_rest * k_sampled_angle);
-  drop_if_at_rest(curves.scale, rest.scale, k_share_of_rest * share_of(rest.scale.norm()));
+                       sampled(times, first_cuts, rotation, k_sampled_angle), sampled(times, first_cuts, scale, share)};
+  drop_if_idle(curves.translation, rest.translation, length);
+  drop_if_idle(curves.rotation, rest.rotation);
+  drop_if_idle(curves.scale, rest.scale, share);
   return curves;
 }
 

@@ -33,11 +33,11 @@ Pose pose_of(const Eigen::Affine3d& map, bool& has_shear);
 VectorCurve joined(const std::array<const ScalarCurve*, 3>& curves, const Vec3& constant, const Eigen::Affine3d& map,
                    double tolerance);
 
-/// Straight pieces (of rotations arcs), cut in halves until they are nearer than `tolerance` to the value at the
-/// quarters of each (of rotations rad). Pieces that stay within a thousandth of it are held. `first_cuts`, one an
-/// interval or empty, says into how many pieces it is cut at least: a value that comes round to where it was would else
-/// pass for one that rests. Throws std::length_error beyond k_most_pieces.
-inline constexpr std::size_t k_most_pieces = 2'000'000; ///< of a curve: some hundred megabytes
+/// Pieces that are straight (of rotations arcs) or else cubic, cut in halves until they are nearer than `tolerance` to
+/// the value at the sixths of each (of rotations rad). Pieces that stay within a thousandth of it are held.
+/// `first_cuts`, one an interval or empty, says into how many pieces it is cut at least: a value that comes round to
+/// where it was would else pass for one that rests. Throws std::length_error beyond k_most_pieces.
+inline constexpr std::size_t k_most_pieces = 1'000'000; ///< of a curve: some hundred megabytes
 VectorCurve sampled(const std::vector<double>& times, const std::vector<int>& first_cuts,
                     const std::function<Vec3(double time, Side side)>& at, double tolerance);
 RotationCurve sampled(const std::vector<double>& times, const std::vector<int>& first_cuts,
@@ -49,11 +49,15 @@ int cuts_for(double turn);
 /// How near sampled curves stay: rad, and of lengths and scales as a share of the largest.
 inline constexpr double k_sampled_angle = 1e-5, k_sampled_share = 1e-5;
 
-/// For lengths of which this is one over time.
-double tolerance_for(const std::vector<double>& times, const std::function<Vec3(double time, Side side)>& at);
+/// For a length (or scale) that is this over time, and that at rest.
+double tolerance_for(const std::vector<double>& times, const std::function<Vec3(double time, Side side)>& at,
+                     const Vec3& rest);
 
-/// Translation, rotation and scale of pose(time, side), sampled; a curve that never leaves the value of `rest` is
-/// left without keys.
+/// Leaves a curve that never leaves `rest` without keys.
+void drop_if_idle(VectorCurve& curve, const Vec3& rest, double tolerance);
+void drop_if_idle(RotationCurve& curve, const Quat& rest);
+
+/// Translation, rotation and scale of pose(time, side), sampled; what never leaves `rest` without keys.
 struct PoseCurves {
   VectorCurve translation;
   RotationCurve rotation;

@@ -22,7 +22,7 @@ struct ScalarKey {
   struct Handle {
     double time = 0.0, value = 0.0;
   };
-  Handle leaving, arriving; ///< of the stretch up to the next key; looked at of a Bezier alone
+  Handle leaving{}, arriving{}; ///< of the stretch up to the next key; looked at of a Bezier alone
 };
 
 /// Keys in the order of their times, of which several may be one: the last counts from there on. Before the first the

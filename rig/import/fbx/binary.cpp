@@ -20,7 +20,7 @@ public:
   Parser(std::string_view bytes, bool is_wide) : bytes_(bytes), is_wide_(is_wide) {}
 
   /// Elements up to an empty one, or up to `end`.
-  std::vector<FbxElement> elements(std::size_t& at, std::size_t end, int depth) {
+  std::vector<FbxElement> elements(std::size_t& at, std::size_t end, int depth, std::string_view parent = {}) {
     if (depth > k_deepest_element) throw FbxUnreadable("elements too deep in each other");
     std::vector<FbxElement> found;
     while (at < end) {
@@ -30,13 +30,17 @@ public:
       FbxElement element;
       element.name = take(at, end, name_length);
       if (next < at || next > end || length > next - at) throw FbxUnreadable("an element that ends beyond its place");
+      if (!is_of_use(parent, element.name)) {
+        at = next;
+        continue;
+      }
       const std::size_t behind_values = at + length;
       // A value is two bytes at least: more would be claimed than there is.
       if (values > length) throw FbxUnreadable("more values than there is room for");
       element.values.reserve(values);
       for (std::size_t v = 0; v < values; ++v) element.values.push_back(value(at, behind_values));
       at = behind_values;
-      element.children = elements(at, next, depth + 1);
+      element.children = elements(at, next, depth + 1, element.name);
       at = next;
       found.push_back(std::move(element));
     }
@@ -103,7 +107,7 @@ private:
     const std::uint32_t encoding = number_at<std::uint32_t>(head, 4);
     if (encoding > 1) throw FbxUnreadable("an array of an unknown encoding");
     value.is_deflated = encoding == 1;
-    value.text = take(at, end, value.is_deflated ? number_at<std::uint32_t>(head, 8) : value.count * size);
+    value.text = take(at, end, value.is_deflated ? number_at<std::uint32_t>(head, 8) : std::size_t{value.count} * size);
     return value;
   }
 

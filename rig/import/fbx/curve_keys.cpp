@@ -6,6 +6,7 @@
 #include "rig/math.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -19,8 +20,8 @@ enum Flag : std::uint32_t {
   cubic = 0x8,           // with neither of them: linear
   constant_next = 0x100, // of a constant key: the next one's value
   tcb = 0x200,
-  user = 0x400, // else, unless tcb: the slope follows from the neighbours
-  broken = 0x800,
+  user = 0x400,   // else, unless tcb: the slope follows from the neighbours
+  clamp = 0x1000, // level where a neighbour has the same value, whatever else is said
   time_independent = 0x2000,
   clamp_progressive = 0x4000,
   weighted_leaving = 0x1000000,
@@ -107,13 +108,15 @@ Slopes slopes_at(const ScalarCurve& keys, const std::vector<Attributes>& all, st
   const ScalarKey* before = k > 0 && keys[k - 1].time < key.time ? &keys[k - 1] : nullptr;
   const ScalarKey* next = k + 1 < keys.size() && keys[k + 1].time > key.time ? &keys[k + 1] : nullptr;
   const Attributes& own = all[k];
-  const bool user_before = before && all[k - 1].is_cubic() && all[k - 1].has(user) && !all[k - 1].has(tcb);
   const double left = before ? (key.value - before->value) / (key.time - before->time) : 0.0;
   const double right = next ? (next->value - key.value) / (next->time - key.time) : 0.0;
-  // What the key before keeps for this one is a slope only where that key has slopes; else it is a bias.
-  const double kept_before = before && all[k - 1].is_cubic() ? all[k - 1].real(1) : 0.0;
+  // What the key before keeps for this one is a slope only where that key has slopes, a bias where it has none.
+  const bool has_data_before = before && all[k - 1].is_cubic() && !all[k - 1].has(tcb);
+  const bool user_before = has_data_before && all[k - 1].has(user);
+  const double kept_before = has_data_before ? all[k - 1].real(1) : 0.0;
 
   if (!own.is_cubic()) return {user_before ? kept_before : left, right};
+  if (own.has(clamp) && ((before && before->value == key.value) || (next && next->value == key.value))) return {};
   if (own.has(tcb)) return tcb_slopes(left, right, !before || !next, own);
   if (own.has(user)) return {user_before ? kept_before : own.real(0), own.real(0)};
   if (!before || !next) {
@@ -127,14 +130,14 @@ Slopes slopes_at(const ScalarCurve& keys, const std::vector<Attributes>& all, st
 
 } // namespace
 
-ScalarCurve curve_keys(const FbxElement& curve, const FbxTree& tree) {
+ScalarCurve curve_keys(const FbxElement& curve, const FbxTree& tree, double ticks_per_second) {
   const std::vector<std::int64_t> times = integers_of(required(curve, "KeyTime"));
   const std::vector<double> values = reals_of(required(curve, "KeyValueFloat"));
   if (times.size() != values.size()) throw FbxUnreadable("a curve with another number of times than of values");
   const std::vector<Attributes> all = attributes(curve, tree, times.size());
   ScalarCurve keys(times.size());
   for (std::size_t k = 0; k < keys.size(); ++k) {
-    keys[k].time = static_cast<double>(times[k]) / k_ticks_per_second;
+    keys[k].time = static_cast<double>(times[k]) / ticks_per_second;
     keys[k].value = values[k];
     if (!(std::abs(values[k]) <= k_largest_number)) throw FbxUnreadable("a curve with a key that is no number");
     if (k > 0 && times[k] < times[k - 1]) throw FbxUnreadable("a curve with key times that fall");

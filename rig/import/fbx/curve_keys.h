@@ -8,11 +8,10 @@
 
 namespace tutu::rig::import_detail {
 
-inline constexpr double k_ticks_per_second = 46186158000.0; ///< of KTime, in files before version 8
-
-/// Times in s, values as they are (angles in degrees). Without keys where the file has none. Throws FbxUnreadable on
-/// arrays that are missing or do not fit each other, on times that fall, on numbers that are none.
-ScalarCurve curve_keys(const FbxElement& curve, const FbxTree& tree);
+/// Times in s (of ticks, of which a second has so many), values as they are (angles in degrees). Without keys where the
+/// file has none. Throws FbxUnreadable on arrays that are missing or do not fit each other, on times that fall, on
+/// numbers that are none.
+ScalarCurve curve_keys(const FbxElement& curve, const FbxTree& tree, double ticks_per_second);
 
 /// Does it go on beyond its keys other than with the value of the last?
 bool is_extrapolated(const FbxElement& curve);

@@ -22,6 +22,18 @@ std::string_view name_without_class(std::string_view text) {
   return at == text.npos ? text : text.substr(at + 2);
 }
 
+/// Until 2019 there was one unit of time; a file of later SDKs says which it has [FBX SDK 2020, FbxTime].
+double ticks_per_second_of(const FbxTree& tree) {
+  constexpr double k_old = 46186158000.0, k_new = 141120000.0;
+  constexpr std::int64_t k_says_old = 127;
+  const FbxElement* header = top(tree, "FBXHeaderExtension");
+  const FbxElement* flags = header ? header->child("OtherFlags") : nullptr;
+  const FbxElement* definition = flags ? flags->child("TCDefinition") : nullptr;
+  const std::optional<std::int64_t> which =
+      definition && !definition->values.empty() ? integer_of(definition->values[0]) : std::nullopt;
+  return which.value_or(k_says_old) == k_says_old ? k_old : k_new;
+}
+
 const FbxElement* properties_of(const FbxElement& element) { return element.child("Properties70"); }
 
 const FbxElement* property_in(const FbxElement* properties, std::string_view name) {
@@ -35,7 +47,8 @@ constexpr std::size_t k_first_number = 4; ///< behind a property's name, type, l
 
 } // namespace
 
-FbxDocument::FbxDocument(std::string_view bytes) : tree_(parse_fbx(bytes)) {
+FbxDocument::FbxDocument(std::string_view bytes)
+    : tree_(parse_fbx(bytes)), ticks_per_second_(ticks_per_second_of(tree_)) {
   const FbxElement* objects = top(tree_, "Objects");
   if (!objects) throw FbxUnreadable("without objects");
   for (const FbxElement& element : objects->children) {

@@ -33,6 +33,7 @@ public:
   explicit FbxDocument(std::string_view bytes);
 
   const FbxTree& tree() const { return tree_; }
+  double ticks_per_second() const { return ticks_per_second_; }
   const std::vector<FbxObject>& objects() const { return objects_; } ///< in the order of the file
   const FbxObject* object(std::int64_t id) const;                    ///< null where there is none
   const std::vector<FbxConnection>& parts_of(std::int64_t id) const; ///< in the order of the file
@@ -48,6 +49,7 @@ private:
   const FbxElement* find(const FbxObject& object, std::string_view property) const;
 
   FbxTree tree_;
+  double ticks_per_second_ = 0.0;
   std::vector<FbxObject> objects_;
   std::unordered_map<std::int64_t, std::size_t> by_id_;
   std::unordered_map<std::int64_t, std::vector<FbxConnection>> parts_;

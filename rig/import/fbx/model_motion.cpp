@@ -51,9 +51,13 @@ Vec3 FbxTrack::at(double time, Side side) const {
   return result;
 }
 
+Quat FbxModel::rotation_at(double time, Side side) const {
+  return (before * turned(rotation.at(time, side), order) * behind).normalized();
+}
+
 Pose FbxModel::at(double time, Side side) const {
   Pose pose;
-  pose.rotation = (before * turned(rotation.at(time, side), order) * behind).normalized();
+  pose.rotation = rotation_at(time, side);
   pose.scale = scale.at(time, side);
   pose.translation =
       translation.at(time, side) + rotation_offset + rotation_pivot + pose.rotation * arm(*this, pose.scale);
@@ -79,8 +83,9 @@ FbxModel model_of(const FbxDocument& document, const FbxObject& object) {
   return model;
 }
 
-NodeMotion motion_of(const FbxModel& model) {
-  const std::vector<double> times = merged_times(curves_of(model));
+NodeMotion motion_of(const FbxModel& model, const FbxModel& standing) {
+  std::vector<double> times = merged_times(curves_of(model));
+  if (times.empty()) times.push_back(0.0); // a take may put a model elsewhere and leave it there
   std::vector<int> cuts;
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
     double degrees = 0.0;
@@ -88,26 +93,35 @@ NodeMotion motion_of(const FbxModel& model) {
       if (!curve.empty()) degrees += way_between(curve, times[i], times[i + 1]);
     cuts.push_back(cuts_for(degrees * k_degree));
   }
-  FbxModel still = model;
-  for (FbxTrack* track : {&still.translation, &still.rotation, &still.scale}) track->curves = {};
-  PoseCurves curves = sampled_pose(
-      times, cuts, [&](double time, Side side) { return model.at(time, side); }, still.at(0.0, Side::behind));
-
-  const auto exactly = [&](const FbxTrack& track, const Vec3& offset, VectorCurve& curve) {
-    if (curve.empty() || !track.moves()) return;
-    const Eigen::Affine3d map(Eigen::Translation3d{offset});
+  const Pose rest = standing.at(0.0, Side::behind), first = model.at(times[0], Side::behind);
+  // Of numbers that alone, and with nothing but an offset, are a translation or a scale.
+  const auto exact = [&](const FbxTrack& track, const Vec3& offset, const Vec3& at_rest) {
     const auto at = [&](double time, Side side) -> Vec3 { return offset + track.at(time, side); };
-    curve = joined(parts_of(track), track.constant, map, tolerance_for(times, at));
+    const double tolerance = tolerance_for(times, at, at_rest);
+    const Eigen::Affine3d map(Eigen::Translation3d{offset});
+    VectorCurve curve = track.moves() ? joined(parts_of(track), track.constant, map, tolerance)
+                                      : VectorCurve{{times[0]}, {at(times[0], Side::behind)}, {Law::step}, {}, {}};
+    drop_if_idle(curve, at_rest, tolerance);
+    return curve;
   };
-  if (has_translation_alone(model)) {
-    const Vec3 offset = still.at(0.0, Side::behind).translation - model.translation.constant;
-    exactly(model.translation, offset, curves.translation);
-  }
-  exactly(model.scale, Vec3::Zero(), curves.scale);
+
   NodeMotion motion;
-  motion.translation = std::move(curves.translation);
-  motion.rotation = std::move(curves.rotation);
-  motion.scale = std::move(curves.scale);
+  motion.rotation =
+      model.rotation.moves()
+          ? sampled(
+                times, cuts, [&](double time, Side side) { return model.rotation_at(time, side); }, k_sampled_angle)
+          : RotationCurve{{times[0]}, {first.rotation.coeffs()}, {Law::step}, {}, {}};
+  drop_if_idle(motion.rotation, rest.rotation);
+  motion.scale = exact(model.scale, Vec3::Zero(), rest.scale);
+  if (has_translation_alone(model)) {
+    motion.translation =
+        exact(model.translation, first.translation - model.translation.at(times[0], Side::behind), rest.translation);
+    return motion;
+  }
+  const auto at = [&](double time, Side side) { return model.at(time, side).translation; };
+  const double tolerance = tolerance_for(times, at, rest.translation);
+  motion.translation = sampled(times, cuts, at, tolerance);
+  drop_if_idle(motion.translation, rest.translation, tolerance);
   return motion;
 }
 

@@ -29,12 +29,14 @@ struct FbxModel {
 
   bool moves() const { return translation.moves() || rotation.moves() || scale.moves(); }
   Pose at(double time, Side side) const;
+  Quat rotation_at(double time, Side side) const; ///< of it
 };
 
 /// As the model stands.
 FbxModel model_of(const FbxDocument& document, const FbxObject& model);
 
-/// Of a model that moves; `node` is left to the caller. Throws std::length_error as sampled() does.
-NodeMotion motion_of(const FbxModel& model);
+/// Of a model in a take, whose numbers may be others than those it stands with in the file; what stays as it stands is
+/// left without keys. `node` is left to the caller. Throws std::length_error as sampled() does.
+NodeMotion motion_of(const FbxModel& model, const FbxModel& standing);
 
 } // namespace tutu::rig::import_detail

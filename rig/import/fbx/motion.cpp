@@ -6,7 +6,6 @@
 #include "rig/text.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <set>
 
@@ -25,21 +24,23 @@ std::string listed(const std::vector<std::string>& names, const std::string& wha
 /// The nodes that a reader has made of models: it walks both trees side by side.
 class NodesOfModels {
 public:
-  NodesOfModels(const FbxDocument& document, const std::vector<FileNode>& nodes)
-      : document_(document), nodes_(nodes), children_(nodes.size()) {
-    for (std::size_t n = 1; n < nodes.size(); ++n)
-      if (nodes[n].parent >= 0) children_[static_cast<std::size_t>(nodes[n].parent)].push_back(static_cast<int>(n));
+  NodesOfModels(const FbxDocument& document, const std::vector<FileNode>& nodes) : taken_(nodes.size(), false) {
+    for (std::size_t n = nodes.size(); n-- > 1;) { // the first comes to stand last, to be taken first
+      const std::string_view name = nodes[n].name;
+      children_[{nodes[n].parent, name}].push_back(static_cast<int>(n));
+      if (has_digits(name))
+        with_digits_[{nodes[n].parent, name.substr(0, name.size() - k_digits)}].push_back(static_cast<int>(n));
+    }
     std::vector<std::pair<std::int64_t, int>> open = {{0, 0}}; // the scene has no object of its own
     while (!open.empty() && !nodes.empty()) {
       const auto [id, node] = open.back();
       open.pop_back();
-      std::set<int> taken;
-      for (const FbxConnection& part : document_.parts_of(id)) {
-        const FbxObject* model = document_.object(part.part);
+      for (const FbxConnection& part : document.parts_of(id)) {
+        const FbxObject* model = document.object(part.part);
         if (!model || model->kind != "Model" || !part.property.empty() || of_model_.contains(part.part)) continue;
-        const int child = child_named(node, model->name, taken);
+        int child = take(children_, node, model->name);
+        if (child < 0) child = take(with_digits_, node, model->name);
         if (child < 0) continue;
-        taken.insert(child);
         of_model_.emplace(part.part, child);
         open.emplace_back(part.part, child);
       }
@@ -52,22 +53,27 @@ public:
   }
 
 private:
-  int child_named(int node, std::string_view name, const std::set<int>& taken) const {
-    int with_digits = -1;
-    for (const int child : children_[static_cast<std::size_t>(node)]) {
-      const std::string_view found = nodes_[static_cast<std::size_t>(child)].name;
-      if (taken.contains(child) || !found.starts_with(name)) continue;
-      if (found.size() == name.size()) return child;
-      const std::string_view rest = found.substr(name.size());
-      if (with_digits < 0 && std::ranges::all_of(rest, [](unsigned char c) { return std::isdigit(c) != 0; }))
-        with_digits = child;
-    }
-    return with_digits;
+  using Children = std::map<std::pair<int, std::string_view>, std::vector<int>>; ///< by parent and name
+
+  static constexpr std::size_t k_digits = 3; ///< that a reader puts behind a name to tell it apart
+  static bool has_digits(std::string_view name) {
+    return name.size() > k_digits && name.find_last_not_of("0123456789") < name.size() - k_digits;
   }
 
-  const FbxDocument& document_;
-  const std::vector<FileNode>& nodes_;
-  std::vector<std::vector<int>> children_;
+  int take(Children& from, int parent, std::string_view name) {
+    const auto found = from.find({parent, name});
+    while (found != from.end() && !found->second.empty()) {
+      const int child = found->second.back();
+      found->second.pop_back();
+      if (taken_[static_cast<std::size_t>(child)]) continue;
+      taken_[static_cast<std::size_t>(child)] = true;
+      return child;
+    }
+    return -1;
+  }
+
+  Children children_, with_digits_;
+  std::vector<bool> taken_;
   std::map<std::int64_t, int> of_model_;
 };
 
@@ -138,7 +144,7 @@ private:
       for (const FbxConnection& part : document_.parts_of(curve_node.id)) {
         const FbxObject* curve = document_.object(part.part);
         if (!curve || curve->kind != "AnimationCurve" || part.property != k_axes[axis]) continue;
-        track.curves[axis] = curve_keys(*curve->element, document_.tree());
+        track.curves[axis] = curve_keys(*curve->element, document_.tree(), document_.ticks_per_second());
         if (!track.curves[axis].empty() && is_extrapolated(*curve->element))
           note_once(extrapolated_, plain_text(model.name));
       }
@@ -151,11 +157,10 @@ private:
 
   void add_motion(std::int64_t id, const FbxModel& model, FileAnimation& animation) {
     const FbxObject& object = *document_.object(id);
-    if (!model.moves()) return;
     const std::string name = plain_text(object.name);
     const int node = nodes_.node_of(id);
     if (node < 0) {
-      note_once(lost_, name);
+      if (model.moves()) note_once(lost_, name);
       return;
     }
     for (const FbxTrack* track : {&model.translation, &model.rotation, &model.scale})
@@ -167,7 +172,7 @@ private:
     if (model.rotation.moves() && document_.number(object, "QuaternionInterpolate", 0.0) != 0.0)
       note_once(slerped_, name);
     if (is_detached(object)) note_once(detached_, name);
-    NodeMotion motion = motion_of(model);
+    NodeMotion motion = motion_of(model, model_of(document_, object));
     motion.node = node;
     if (!motion.translation.empty() || !motion.rotation.empty() || !motion.scale.empty())
       animation.nodes.push_back(std::move(motion));
@@ -189,8 +194,8 @@ private:
     const std::optional<std::int64_t> stop = document_.own_integer(stack, "LocalStop");
     const std::int64_t start = document_.own_integer(stack, "LocalStart").value_or(0); // what is 0 may be left out
     if (stop && *stop > start) {
-      animation.start = static_cast<double>(start) / k_ticks_per_second;
-      animation.end = static_cast<double>(*stop) / k_ticks_per_second;
+      animation.start = static_cast<double>(start) / document_.ticks_per_second();
+      animation.end = static_cast<double>(*stop) / document_.ticks_per_second();
       return;
     }
     animation.start = std::min(first_.value_or(0.0), 0.0);

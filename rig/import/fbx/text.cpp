@@ -14,7 +14,7 @@ public:
   explicit Parser(std::string_view text) : text_(text) {}
 
   /// Up to the end of the text, or below the top up to a closing brace, which is taken.
-  std::vector<FbxElement> elements(int depth) {
+  std::vector<FbxElement> elements(int depth, std::string_view parent = {}) {
     if (depth > k_deepest_element) throw FbxUnreadable("elements too deep in each other");
     std::vector<FbxElement> found;
     for (;;) {
@@ -28,7 +28,8 @@ public:
         ++at_;
         return found;
       }
-      found.push_back(element(depth));
+      FbxElement next = element(depth);
+      if (is_of_use(parent, next.name)) found.push_back(std::move(next));
     }
   }
 
@@ -66,7 +67,7 @@ private:
         ++at_;
       } else if (next == '{') {
         ++at_;
-        element.children = elements(depth + 1);
+        element.children = elements(depth + 1, element.name);
         return element;
       } else {
         element.values.push_back(value());

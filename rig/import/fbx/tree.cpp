@@ -16,7 +16,7 @@ std::size_t size_of(char element) { return element == 'b' ? 1 : element == 'i' |
 
 /// The bytes of a binary array's elements.
 std::string unpacked(const FbxValue& array) {
-  const std::size_t size = array.count * size_of(array.element);
+  const std::size_t size = std::size_t{array.count} * size_of(array.element);
   if (!array.is_deflated) return std::string(array.text); // taken with this very size
   constexpr std::size_t k_most_inflation = 1032;          // [zlib technical details]: no stream grows more
   if (size > array.text.size() * k_most_inflation) throw FbxUnreadable("an array longer than its bytes can be");
@@ -72,6 +72,15 @@ const FbxValue* array_in(const FbxElement& element) {
 const FbxElement* FbxElement::child(std::string_view wanted) const {
   const auto found = std::ranges::find(children, wanted, &FbxElement::name);
   return found == children.end() ? nullptr : &*found;
+}
+
+bool is_of_use(std::string_view parent, std::string_view name) {
+  const auto is_one_of = [&](std::initializer_list<std::string_view> names) {
+    return std::ranges::find(names, name) != names.end();
+  };
+  if (parent.empty()) return is_one_of({"FBXHeaderExtension", "Definitions", "Objects", "Connections"});
+  if (parent != "Objects") return true;
+  return is_one_of({"Model", "AnimationStack", "AnimationLayer", "AnimationCurveNode", "AnimationCurve"});
 }
 
 FbxTree parse_fbx(std::string_view bytes) {

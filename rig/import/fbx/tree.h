@@ -21,12 +21,12 @@ public:
 struct FbxValue {
   enum class Kind : std::uint8_t { integer, real, text, array, text_array };
   Kind kind = Kind::integer;
+  char element = 0;         ///< of a binary array: 'f', 'd', 'i', 'l' or 'b'
+  bool is_deflated = false; ///< a binary array's bytes
+  std::uint32_t count = 0;  ///< elements an array claims to have
   std::int64_t integer = 0;
   double real = 0.0;
-  std::string_view text;    ///< of an array what stands between its bounds, of a binary one its bytes
-  char element = 0;         ///< of a binary array: 'f', 'd', 'i', 'l' or 'b'
-  std::size_t count = 0;    ///< elements an array claims to have
-  bool is_deflated = false; ///< a binary array's bytes
+  std::string_view text; ///< of an array what stands between its bounds, of a binary one its bytes
 };
 
 struct FbxElement {
@@ -40,11 +40,11 @@ struct FbxElement {
 struct FbxTree {
   int version = 0; ///< 7400, say
   bool is_text = false;
-  std::vector<FbxElement> elements; ///< of the top
+  std::vector<FbxElement> elements; ///< of the top: what motion is made of, no more (is_of_use)
 };
 
 /// The bytes must outlive the tree. Throws FbxUnreadable on what is neither form, on versions before 7.0 and from 8.0,
-/// on lengths beyond the file, on elements nested more than 100 deep.
+/// on lengths beyond the file, on elements nested more than 100 deep. Of what it does not keep it sees the place alone.
 FbxTree parse_fbx(std::string_view bytes);
 
 /// Of a whole number or a real one, else none.

@@ -158,6 +158,37 @@ TEST(ColladaDocuments, OtherTextIsRefusedWithALine) {
   EXPECT_THAT(message(text + "</COLLADA>"), HasSubstr("more than 1000 deep"));
 }
 
+TEST(ColladaDocuments, NumbersGoOnBehindAComment) {
+  std::string text = motion_text(k_nodes, moving("n1/t.X", "a"));
+  const std::size_t at = text.find(">0 1</float_array>", text.find("a-v-a"));
+  text.replace(at, 4, ">0<!-- and --> <![CDATA[5]]>");
+  const auto clips = import_detail::animations(ColladaDocument("test.dae", text), k_node_of);
+  EXPECT_EQ(value_at(clips.at(0).nodes.at(0).translation, 1).x(), 5);
+}
+
+TEST(ColladaDocuments, AnArrayOfASkinIsThereOnce) {
+  const auto message = [](const std::string& more) -> std::string {
+    const std::string weights = "<float_array id='wa'>1 0.5</float_array>";
+    try {
+      check_skins(
+          ColladaDocument("test.dae", "<COLLADA><controller><skin source='#body'><source id='j'><Name_array "
+                                      "id='ja'>a b</Name_array></source><source id='w'>" +
+                                          weights +
+                                          "<technique_common><accessor source='#wa' count='2'/></technique_common>"
+                                          "</source><vertex_weights><input semantic='JOINT' source='#j' "
+                                          "offset='0'/><input semantic='WEIGHT' source='#w' offset='1'/><v>0 0 1 "
+                                          "1</v></vertex_weights></skin></controller>" +
+                                          more + "</COLLADA>"));
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(message(""), "");
+  EXPECT_EQ(message("<float_array id='wa'>1 -0.5</float_array>"),
+            "test.dae: skin of #body: found two elements of the id wa, expected ids of their own");
+}
+
 TEST(ColladaDocuments, DamagedAnywhereTheyAreReadOrRefused) {
   const std::string whole = motion_text(
       k_nodes,
