@@ -51,6 +51,7 @@ rig::Clip clip_for(const ClipMotion& motion, const rig::Skeleton& skeleton, std:
 rig::Clip clip_for(const MocapMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
   rig::Mocap take = rig::read_bvh(motion.bvh, motion.options);
   rig::rename_joints(take.skeleton, motion.joints, motion.bvh.string());
+  for (const std::string& note : take.notes) notes.push_back(motion.bvh.filename().string() + ": " + note);
   return retargeted(take.clip, take.skeleton, skeleton, motion.bvh, notes);
 }
 
