@@ -68,10 +68,15 @@ private:
   void check_lines() {
     if (!odd_ || odd_->frame == 0) return;
     if (const int found = words_.numbers_on(odd_->line); found != hierarchy_.all_channels())
-      throw words_.error_at(odd_->line, std::to_string(found) + " numbers for frame " + std::to_string(odd_->frame),
+      throw words_.error_at(odd_->line,
+                            std::to_string(found) + (found == 1 ? " number" : " numbers") + " for frame " +
+                                std::to_string(odd_->frame),
                             a_frame());
   }
-  std::string a_frame() const { return std::to_string(hierarchy_.all_channels()) + " numbers"; }
+  std::string a_frame() const {
+    const int count = hierarchy_.all_channels();
+    return std::to_string(count) + (count == 1 ? " number" : " numbers");
+  }
 
   struct Place {
     int frame, line;
