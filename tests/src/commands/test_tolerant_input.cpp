@@ -55,7 +55,7 @@ TEST_F(TolerantInput, RotationsOffUnitLengthPlayWithOneNote) {
       play(scene({{"motion", {{"texts", {{"translations", "t.txt"}, {"rotations", "q.txt"}, {"times", "k.txt"}}}}}}));
   EXPECT_EQ(texts.status, 0) << texts.output;
   EXPECT_THAT(texts.output, HasSubstr("q.txt: 1 of 4 rotations was not of unit length (0.98): normalised"));
-  EXPECT_EQ(count_of(texts.output, "note: "), 1) << texts.output;
+  EXPECT_EQ(count_of(texts.output, "unit length"), 1) << texts.output;
 
   write_file(folder_ / "off.json", R"({"keys": [{"time": 0, "joints": {"Hips": {"rotation": [0, 0, 0, 0.98]}}},
                                                 {"time": 0.2, "joints": {"Hips": {"rotation": [0, 0, 0, 1.07]}}}]})");
