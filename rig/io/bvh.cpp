@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace tutu::rig {
 namespace {
@@ -94,8 +95,10 @@ void turn_to_y_up(Hierarchy& hierarchy, std::span<Transform> poses) {
   for (Transform& local : poses) local = turned_to_y_up(local);
 }
 
-/// Turns all of it to +Y up and finds the rest pose. `rest`: the frame that was chosen for it.
-void stand_up(Hierarchy& hierarchy, std::vector<Pose>& samples, const std::optional<Pose>& rest, Mocap& mocap) {
+/// Turns all of it to +Y up and finds the rest pose. `rest`: the frame that was chosen for it. `frames`: of the
+/// samples.
+void stand_up(Hierarchy& hierarchy, std::vector<Pose>& samples, std::span<const int> frames,
+              const std::optional<Pose>& rest, Mocap& mocap) {
   const Landmarks marks = find_landmarks(hierarchy.skeleton);
   Pose& rest_local = hierarchy.skeleton.rest_local;
   const bool z_up = is_z_up(hierarchy, marks, samples, rest ? &*rest : nullptr);
@@ -115,6 +118,10 @@ void stand_up(Hierarchy& hierarchy, std::vector<Pose>& samples, const std::optio
   rest_local = std::move(standing.rest);
   for (std::size_t root = 0; root < mocap.clip.local.size(); root += rest_local.size())
     mocap.clip.local[root].translation.y() += standing.raise;
+  if (standing.sample)
+    mocap.notes.push_back("the pose with all rotations zero does not stand: frame " +
+                          std::to_string(frames[*standing.sample]) +
+                          " is the rest pose (\"rest_frame\" chooses another)");
   mocap.notes.insert(mocap.notes.end(), standing.notes.begin(), standing.notes.end());
 }
 
@@ -162,11 +169,15 @@ Mocap read_bvh(const std::filesystem::path& file, const BvhOptions& options) {
   Pose pose(joints);
   std::optional<Pose> rest;
   std::vector<Pose> samples;
+  std::vector<int> sampled;
   const double slack = 1e-6 * step; // a time that was written as a multiple of the step means that frame
   for (int frame = 0; frame < frames.count(); ++frame) {
     frames.read(frame, pose);
     if (options.rest_frame == frame) rest = pose;
-    if (frame >= static_cast<double>(samples.size()) * frames.count() / samples_wanted) samples.push_back(pose);
+    if (frame >= static_cast<double>(samples.size()) * frames.count() / samples_wanted) {
+      samples.push_back(pose);
+      sampled.push_back(frame);
+    }
     const double time = frame * step;
     if (time < options.from - slack || (options.to && time > *options.to + slack)) continue;
     clip.times.push_back(static_cast<double>(clip.times.size()) * step);
@@ -177,7 +188,7 @@ Mocap read_bvh(const std::filesystem::path& file, const BvhOptions& options) {
     throw words.error(std::to_string(frames.count() * step) + " s of motion", "a frame in the time asked for");
   clip.airborne.assign(clip.times.size(), false);
 
-  stand_up(hierarchy, samples, rest, mocap);
+  stand_up(hierarchy, samples, sampled, rest, mocap);
   mocap.notes.insert(mocap.notes.begin(), hierarchy.notes.begin(), hierarchy.notes.end());
   mocap.skeleton = hierarchy.skeleton;
   scale(hierarchy, file.string(), mocap);

@@ -225,7 +225,7 @@ Transform turned_to_y_up(const Transform& t) {
 }
 
 Standing find_standing(const Hierarchy& hierarchy, const Landmarks& marks, std::span<const Pose> samples) {
-  Standing standing{hierarchy.skeleton.rest_local, 0.0, {}};
+  Standing standing{hierarchy.skeleton.rest_local, 0.0, {}, {}};
   if (marks.known()) {
     const std::optional<Vec3> up = stance(hierarchy, marks, standing.rest);
     if (up && up->y() < 0.5) {
@@ -245,9 +245,7 @@ Standing find_standing(const Hierarchy& hierarchy, const Landmarks& marks, std::
       const auto chosen = stands != samples.end() ? stands : std::ranges::max_element(samples, {}, uprightness);
       standing.rest = *chosen;
       face_forward(hierarchy, marks, standing.rest);
-      standing.notes.emplace_back("the pose with all rotations zero does not stand: " +
-                                  std::string(chosen == samples.begin() ? "the first frame" : "an upright frame") +
-                                  " is the rest pose (\"rest_frame\" chooses another)");
+      standing.sample = static_cast<std::size_t>(chosen - samples.begin());
     }
   }
   put_on_floor(hierarchy, marks, samples, standing);

@@ -38,8 +38,9 @@ Transform turned_to_y_up(const Transform& t);
 
 /// How the actor stands, with +Y up; the file's unit.
 struct Standing {
-  Pose rest;          ///< feet as high as they are where the actor stands in the motion
-  double raise = 0.0; ///< to be added to the root's height in all frames, so that the floor is at 0
+  Pose rest;                         ///< feet as high as they are where the actor stands in the motion
+  double raise = 0.0;                ///< to be added to the root's height in all frames, so that the floor is at 0
+  std::optional<std::size_t> sample; ///< whose pose the rest pose is, where all rotations zero are no stance
   std::vector<std::string> notes;
 };
 /// The rest pose: all rotations zero; turned to stand upright where that lies; the most upright of the samples where it

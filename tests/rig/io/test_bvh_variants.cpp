@@ -257,7 +257,7 @@ TEST(BvhVariants, AZeroPoseThatIsNoStanceGivesWayToTheFirstFrame) {
     return rotation_between(Vec3::UnitY(), along);
   };
   const Mocap mocap = read(take({.zero = zero}));
-  EXPECT_THAT(mocap.notes, ElementsAre(HasSubstr("does not stand: the first frame is the rest pose")));
+  EXPECT_THAT(mocap.notes, ElementsAre(HasSubstr("does not stand: frame 0 is the rest pose")));
   expect_same(OnDancer(mocap), plain, 1e-6);
 }
 
