@@ -212,8 +212,10 @@ bool is_z_up(const Hierarchy& hierarchy, const Landmarks& marks, std::span<const
   const std::optional<Vec3> motion = main_axis(sum / static_cast<double>(samples.size()));
   const double leg = leg_length(hierarchy, marks);
   const bool high_y = is_hip_height(samples, k_y, leg), high_z = is_hip_height(samples, k_z, leg);
-  if (is(motion, k_y)) return is(zero, k_z) && high_z && !high_y; // else it lies through the whole take
-  if (is(motion, k_z)) return !is(zero, k_y) || (high_z && !high_y);
+  // Who is upright in the motion is so in the world, whichever way zero lies; but who is along +Z in a skeleton that
+  // stands along +Y may lie through the whole take: then the hips are not that high.
+  if (is(motion, k_y)) return false;
+  if (is(motion, k_z)) return !is(zero, k_y) || high_z;
   return is(zero, k_z) && !(high_y && !high_z);
 }
 

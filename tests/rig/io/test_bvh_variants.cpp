@@ -213,6 +213,18 @@ TEST(BvhVariants, ZUpIsFoundAndTurned) {
   expect_same(OnDancer(chosen), y_up, 1e-9);
 }
 
+TEST(BvhVariants, WhoLiesThroughATakeIsNotStoodUp) {
+  // The plain skeleton on its back, in a file with Y up: hips 12 cm above the floor, legs along Z.
+  std::string text = "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 4 Xposition Yposition Zposition Xrotation\n"
+                     "JOINT LeftUpLeg\n{\nOFFSET 9 -5 0\nJOINT LeftLeg\n{\nOFFSET 0 -40 0\nJOINT LeftFoot\n{\n"
+                     "OFFSET 0 -40 0\nEnd Site\n{\nOFFSET 0 0 12\n}\n}\n}\n}\nJOINT Head\n{\nOFFSET 0 60 0\n"
+                     "End Site\n{\nOFFSET 0 20 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.1\n";
+  const Mocap on_back = read(text + "0 12 300 90\n0 12 301 90\n");
+  EXPECT_THAT(on_back.notes, testing::Not(testing::Contains(HasSubstr("Z up"))));
+  const Mocap z_up = read(text + "0 300 95 90\n0 301 95 90\n");
+  EXPECT_THAT(z_up.notes, testing::Contains(HasSubstr("Z up")));
+}
+
 TEST(BvhVariants, NamesThatSayNothingLeaveItToExtentsAndTheHeightOfTheHips) {
   const auto height = [](const Mocap& mocap) { return mocap.clip.key(0)[0].translation; };
   const Mocap y_up = read(take({.named = false})), turned = read(take({.axes = z_up, .named = false}));
