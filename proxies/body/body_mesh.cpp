@@ -1,6 +1,7 @@
 #include "proxies/body/body_mesh.h"
 
 #include "proxies/body/detail/mesh_census.h"
+#include "proxies/body/detail/mesh_mend.h"
 #include "proxies/body/detail/mesh_tree.h"
 #include "proxies/body/detail/solid_angle.h"
 #include "proxies/detail/query_guard.h"
@@ -31,15 +32,23 @@ constexpr Precision k_any[] = {{2.0, 0.2}, {4.0, 0.05}};
 
 } // namespace
 
+std::optional<std::string> note_of(const MeshCensus& census) {
+  if (census.mended_triangles == 0) return std::nullopt;
+  return std::to_string(census.mended_triangles) +
+         (census.mended_triangles == 1 ? " triangle was" : " triangles were") + " turned over: mended";
+}
+
 BodyMesh::BodyMesh(std::span<const Vec3f> bind_positions, std::span<const rig::Triangle> triangles)
     : triangles_(triangles.begin(), triangles.end()) {
   require_usable_mesh(bind_positions, triangles);
   for (const Vec3f& p : bind_positions) positions_.push_back(p.cast<double>());
   topology_ = std::make_unique<MeshTopology>(find_topology(bind_positions, triangles));
+  const int mended = mend_turned_triangles(positions_, triangles_, *topology_);
   tree_ = std::make_unique<MeshTree>(positions_, triangles_);
   MeshFindings found = take_census(positions_, triangles_, *topology_,
                                    [&](const Vec3& p) { return tree_->winding_number(p, k_whole_beta); });
   census_ = std::move(found.census);
+  census_.mended_triangles = mended;
   is_closed_ = census_.open_edges == 0 && census_.nonmanifold_edges == 0 && census_.turned_triangles == 0;
   if (census_.inner_shells == 0) return;
   for (const int shell : topology_->shell_of) inner_.push_back(found.inner[shell]);

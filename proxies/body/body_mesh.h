@@ -51,13 +51,17 @@ struct MeshCensus {
   int open_edges = 0;              ///< of one triangle
   int nonmanifold_edges = 0;       ///< of more than two
   int pinched_vertices = 0;        ///< where two or more fans of triangles meet in one place
-  int turned_triangles = 0;        ///< that run against most of their shell
+  int mended_triangles = 0;        ///< that ran against their neighbours, and were turned back
+  int turned_triangles = 0;        ///< that run against most of their shell, and were not
   int flat_triangles = 0;          ///< without area
   double area = 0.0;               ///< m2
   double volume = 0.0;             ///< m3; an open shell counts as if closed from its middle
   SideRule rule = SideRule::pseudonormal;
   std::string reason; ///< why that rule, as one clause
 };
+
+/// "22 triangles were turned over: mended", where some were.
+std::optional<std::string> note_of(const MeshCensus& census);
 
 /// How a capsule (or sphere) meets the surface.
 struct MeshHits {
@@ -69,9 +73,10 @@ struct MeshHits {
 
 class BodyMesh {
 public:
-  /// Takes a census and is posed as given. Throws std::invalid_argument, in words for the user, on what has no sides:
-  /// no triangle, indices out of range, non-finite positions, no area, no volume, the whole or more than 1 % of it
-  /// turned inside out.
+  /// Takes a census and is posed as given. Triangles that run against their neighbours are turned back where there
+  /// is no doubt which those are: in closed shells with two sides, and a few in open ones. Throws
+  /// std::invalid_argument, in words for the user, on what has no sides: no triangle, indices out of range, non-finite
+  /// positions, no area, no volume, the whole or more than 1 % of it turned inside out.
   BodyMesh(std::span<const Vec3f> bind_positions, std::span<const rig::Triangle> triangles);
   ~BodyMesh();
   BodyMesh(BodyMesh&&) noexcept;
@@ -85,7 +90,7 @@ public:
   void pose(std::span<const Vec3> positions);
 
   std::span<const Vec3> positions() const { return positions_; }
-  std::span<const rig::Triangle> triangles() const { return triangles_; }
+  std::span<const rig::Triangle> triangles() const { return triangles_; } ///< in the order given; mended
 
   // Questions may be asked from several threads at once. Points must be finite.
 

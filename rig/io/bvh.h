@@ -7,13 +7,15 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tutu::rig {
 
 /// Which part of a take to read, and what its skeleton rests in.
 struct BvhOptions {
   /// The frame that is the rest pose, where the actor stands as characters do: many takes begin with a T-pose. None:
-  /// all rotations zero, the lowest point on the ground.
+  /// all rotations zero, stood up where the actor then lies, the feet as high as they are in the motion where it
+  /// stands; an upright frame where the actor then has no stance at all.
   std::optional<int> rest_frame;
   double from = 0.0;        ///< s from the first frame: what is before is left out, time begins at 0 there
   std::optional<double> to; ///< s; none = the end
@@ -22,14 +24,17 @@ struct BvhOptions {
 struct Mocap {
   Skeleton skeleton;
   Clip clip;
+  std::vector<std::string> notes; ///< what was decided that the file does not say, a clause each
 };
 
 /// A BVH file has no unit: it is scaled so that the actor's skeleton at rest, ends of bones included, is this high, m.
 /// On a character its travel is scaled anew, by rest heights (retarget).
 inline constexpr double k_bvh_stature = 1.7;
 
-/// Reads a take. Rotations are the product of the channels in their order, left to right [Meredith and Maddock
-/// 2001]; the file is taken to be right-handed with +Y up, as it nearly always is. Throws InputError with file and
+/// Reads a take. Rotations are the product of the channels in their order, left to right, positions take the place of
+/// the offset [Meredith and Maddock 2001]. Right-handed, +Y up; a file with +Z up, as its legs and the height of its
+/// hips tell, is turned: (x, y, z) -> (x, z, -y). Of several roots the first is read. Where feet at rest and in motion
+/// tell that the floor is not at height 0, it is put there. Each of these is noted. Throws InputError with file and
 /// line on all that is malformed, on rest frames and times that are not there.
 Mocap read_bvh(const std::filesystem::path& file, const BvhOptions& options = {});
 

@@ -1,6 +1,7 @@
 // Clips as JSON. The three texts are in three_texts.cpp.
 #include "rig/io/clip_file.h"
 
+#include "rig/io/detail/unit_rotations.h"
 #include "rig/io/file_io.h"
 #include "rig/io/json_file.h"
 
@@ -11,22 +12,26 @@ namespace {
 
 using nlohmann::json;
 
-JointKey read_joint(const JsonValue& value) {
+JointKey read_joint(const JsonValue& value, UnitRotations& rotations) {
   value.only_keys({"translation", "rotation"});
   JointKey joint;
   if (const auto translation = value.find("translation")) joint.translation = translation->vec3();
-  if (const auto rotation = value.find("rotation")) joint.rotation = rotation->rotation();
+  if (const auto rotation = value.find("rotation")) {
+    const std::vector<double> v = rotation->numbers(4);
+    joint.rotation = rotations.normalised(Quat(v[3], v[0], v[1], v[2]));
+    if (!joint.rotation) throw rotation->error(UnitRotations::k_expected);
+  }
   return joint;
 }
 
-RawClip::Key read_key(const JsonValue& value) {
+RawClip::Key read_key(const JsonValue& value, UnitRotations& rotations) {
   value.only_keys({"time", "name", "airborne", "joints"});
   RawClip::Key key;
   key.time = value.at("time").number();
   if (const auto name = value.find("name")) key.name = name->string();
   if (const auto airborne = value.find("airborne")) key.airborne = airborne->boolean();
   if (const auto joints = value.find("joints"))
-    for (const auto& [name, joint] : joints->members()) key.joints[name] = read_joint(joint);
+    for (const auto& [name, joint] : joints->members()) key.joints[name] = read_joint(joint, rotations);
   return key;
 }
 
@@ -63,7 +68,7 @@ std::string text_of(const RawClip::Key& key) {
 
 } // namespace
 
-RawClip read_clip(const std::filesystem::path& file) {
+RawClip read_clip(const std::filesystem::path& file, std::vector<std::string>* notes) {
   const JsonValue root = JsonValue::read(file);
   root.only_keys({"name", "extrapolation", "interpolation", "keys"});
   RawClip clip;
@@ -77,9 +82,10 @@ RawClip read_clip(const std::filesystem::path& file) {
   if (const auto interpolation = root.find("interpolation"))
     clip.interpolation = interpolation_named(interpolation->string_among(k_interpolation_names));
 
+  UnitRotations rotations;
   const JsonValue keys = root.at("keys");
   for (const JsonValue& value : keys.items()) {
-    RawClip::Key key = read_key(value);
+    RawClip::Key key = read_key(value, rotations);
     if (!clip.keys.empty() && !(key.time > clip.keys.back().time))
       throw value.at("time").error(text_of(key.time) + " s after " + text_of(clip.keys.back().time) + " s of key " +
                                        std::to_string(clip.keys.size() - 1),
@@ -87,6 +93,7 @@ RawClip read_clip(const std::filesystem::path& file) {
     clip.keys.push_back(std::move(key));
   }
   if (clip.keys.empty()) throw keys.error("no keys", "at least one key");
+  if (const auto note = rotations.note(); note && notes) notes->push_back(clip.file + ": " + *note);
   return clip;
 }
 

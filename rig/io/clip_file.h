@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace tutu::rig {
 
 /// JSON (assets/schema/clip.schema.json); the name defaults to the file's, extrapolation to loop, interpolation to
-/// nlerp. Throws InputError with file, JSON pointer, found and expected.
-RawClip read_clip(const std::filesystem::path& file);
+/// nlerp. Rotations up to 10 % off unit length are normalised, which `notes` (may be null) receives as one sentence.
+/// Throws InputError with file, JSON pointer, found and expected.
+RawClip read_clip(const std::filesystem::path& file, std::vector<std::string>* notes = nullptr);
 void write_clip(const RawClip& clip, const std::filesystem::path& file);
 
 /// The report's form, blanks between numbers, no names: `translations` (3 numbers a joint) and `rotations` (x y z w a
@@ -24,9 +26,9 @@ struct ThreeTexts {
 
 /// Reads a clip from the three texts. Translations in another unit than the skeleton's metres are recognised by the
 /// bone lengths (median over joints and poses of file length to rest length, within 10 % of m, dm, cm, mm, inches or
-/// feet) and converted; `unit_note` (may be null) receives one sentence when that happened. Rotations within 1e-2 of
-/// unit length are normalised. Throws InputError with file and line; also on translations in no known unit.
-RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std::string* unit_note);
+/// feet) and converted. Rotations up to 10 % off unit length are normalised. Of either `notes` (may be null) receives
+/// one sentence when it happened. Throws InputError with file and line; also on translations in no known unit.
+RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std::vector<std::string>* notes);
 
 /// Writes every joint of every key (what is not given is as at rest) in skeleton order, and that order to
 /// `files.joints` where given; names of keys, extrapolation, interpolation and flights have no place. Shortest decimal

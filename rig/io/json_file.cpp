@@ -280,12 +280,4 @@ Vec3 JsonValue::vec3() const {
   return {v[0], v[1], v[2]};
 }
 
-Quat JsonValue::rotation() const {
-  const std::vector<double> v = numbers(4);
-  const Quat q(v[3], v[0], v[1], v[2]);
-  if (std::abs(q.norm() - 1.0) > 1e-3) throw error("a unit quaternion [x, y, z, w]");
-  // Already unit to the last digits: keep the bits, so that what was written is what is read.
-  return std::abs(q.squaredNorm() - 1.0) < 1e-14 ? q : q.normalized();
-}
-
 } // namespace tutu

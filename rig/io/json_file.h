@@ -54,8 +54,6 @@ public:
   Vec3 vec3() const;
   std::vector<double> numbers() const;                  ///< any length
   std::vector<double> numbers(std::size_t count) const; ///< exactly `count`
-  /// [x, y, z, w]; normalised; throws when its length is not within 1e-3 of 1.
-  Quat rotation() const;
 
   bool is_object() const { return node_->is_object(); }
   bool is_array() const { return node_->is_array(); }

@@ -1,6 +1,7 @@
 // The three texts of the report: translations, rotations, times.
 #include "rig/error.h"
 #include "rig/io/clip_file.h"
+#include "rig/io/detail/unit_rotations.h"
 #include "rig/io/file_io.h"
 #include "rig/io/json_file.h"
 #include "rig/io/memory_limit.h"
@@ -170,16 +171,6 @@ Unit unit_of(const RawClip& clip, const std::vector<int>& joints, const Skeleton
                    "translations in metres, decimetres, centimetres, millimetres, inches or feet");
 }
 
-/// Unit already to the last digits: the bits are kept. Exports with few digits are normalised.
-Quat rotation_of(const Text& text, const Text::Line& line, const double* xyzw, const std::string& joint) {
-  constexpr double k_near_unit = 1e-2;
-  const Quat q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
-  if (!(std::abs(q.norm() - 1.0) <= k_near_unit))
-    throw text.error(line, "a rotation of length " + std::to_string(q.norm()) + " for joint " + joint,
-                     "a unit quaternion x y z w");
-  return std::abs(q.squaredNorm() - 1.0) < 1e-14 ? q : q.normalized();
-}
-
 template <std::size_t k_count> void append(std::string& text, const std::array<double, k_count>& values) {
   for (const double value : values) {
     char digits[32];
@@ -191,7 +182,7 @@ template <std::size_t k_count> void append(std::string& text, const std::array<d
 
 } // namespace
 
-RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std::string* unit_note) {
+RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std::vector<std::string>* notes) {
   std::vector<int> joints;
   if (files.joints) joints = read_joints(*files.joints, skeleton);
   else
@@ -213,6 +204,7 @@ RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std:
   RawClip clip;
   clip.file = translations.file;
   clip.name = files.translations.stem().string();
+  UnitRotations unit_rotations;
   const std::string of_joints = " numbers for each of " + std::to_string(joints.size()) + " joints";
   for (std::size_t k = 0; k < times.size(); ++k) {
     RawClip::Key& key = clip.keys.emplace_back();
@@ -221,8 +213,13 @@ RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std:
     const auto q = numbers(rotations, rotations.lines[k], 4 * joints.size(), "4" + of_joints);
     for (std::size_t j = 0; j < joints.size(); ++j) {
       const std::string& name = skeleton.names[joints[j]];
-      key.joints[name] = {Vec3(t[3 * j], t[3 * j + 1], t[3 * j + 2]),
-                          rotation_of(rotations, rotations.lines[k], &q[4 * j], name)};
+      const Quat as_given(q[4 * j + 3], q[4 * j], q[4 * j + 1], q[4 * j + 2]);
+      const std::optional<Quat> rotation = unit_rotations.normalised(as_given);
+      if (!rotation)
+        throw rotations.error(rotations.lines[k],
+                              "a rotation of length " + std::to_string(as_given.norm()) + " for joint " + name,
+                              UnitRotations::k_expected);
+      key.joints[name] = {Vec3(t[3 * j], t[3 * j + 1], t[3 * j + 2]), rotation};
     }
   }
 
@@ -230,10 +227,11 @@ RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std:
   if (unit.per_metre != 1.0) {
     for (RawClip::Key& key : clip.keys)
       for (auto& [name, joint] : key.joints) *joint.translation /= unit.per_metre;
-    if (unit_note)
-      *unit_note = "The translations of " + clip.file + " are in " + unit.name +
-                   ", as their bones tell; they were converted to metres.";
+    if (notes)
+      notes->push_back("The translations of " + clip.file + " are in " + unit.name +
+                       ", as their bones tell; they were converted to metres.");
   }
+  if (const auto note = unit_rotations.note(); note && notes) notes->push_back(rotations.file + ": " + *note);
   return clip;
 }
 

@@ -64,7 +64,10 @@ Poses poses_for(const Options& options, const rig::Import& import, std::string& 
   const rig::Skeleton& skeleton = import.character.skeleton;
   if (options.motion) {
     motion = std::filesystem::path(*options.motion).filename().string();
-    return poses_of(rig::build_clip(rig::read_clip(*options.motion), skeleton), skeleton);
+    std::vector<std::string> notes;
+    const rig::RawClip clip = rig::read_clip(*options.motion, &notes);
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+    return poses_of(rig::build_clip(clip, skeleton), skeleton);
   }
   motion = "strong poses";
   Poses poses;
@@ -188,13 +191,17 @@ int run(const Options& options) {
   if (options.motion) inputs.emplace_back(*options.motion);
   if (options.garment) inputs.emplace_back(*options.garment);
   check_outputs({{"--out", options.out}, {"--curve", options.curve}, {"--json", options.json}}, inputs);
-  const rig::Import import = rig::import_character(options.character, options.import);
-  const rig::Character& character = import.character;
+  rig::Import import = rig::import_character(options.character, options.import);
+  rig::Character& character = import.character;
   std::string motion;
   const Poses poses = poses_for(options, import, motion);
   // What is wrong with garment and body is said before the work.
   if (options.garment) garments_for(options, character);
-  body_of(character);
+  const proxies::BodyMesh body = body_of(character);
+  if (const auto note = proxies::note_of(body.census())) {
+    fmt::print(stderr, "note: {}: {}\n", std::filesystem::path(options.character).filename().string(), *note);
+    character.mesh.triangles.assign(body.triangles().begin(), body.triangles().end());
+  }
   const auto region = options.region == "body" ? proxies::FitRegion::body : proxies::FitRegion::garment;
   proxies::FitOptions fit;
   fit.count = options.max_error_mm && options.count == Options{}.count ? 128 : options.count;

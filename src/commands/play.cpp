@@ -142,10 +142,10 @@ std::optional<Draped> other_scene(const PlayOptions& options, const Draped& firs
     override_setting(description, options.split, "--split");
     draped.scene = load_scene(description);
   }
-  const int frames = first.scene.settings.frames_per_second, others = draped.scene.settings.frames_per_second;
+  const double frames = first.scene.settings.frames_per_second, others = draped.scene.settings.frames_per_second;
   if (frames != others)
-    throw InputError(draped.scene.file, "/solver/frames_per_second", std::to_string(others),
-                     std::to_string(frames) + ", as the first scene has");
+    throw InputError(draped.scene.file, "/solver/frames_per_second", fmt::format("{}", others),
+                     fmt::format("{}, as the first scene has", frames));
   if (!options.split.empty()) { // the same start, so that what differs is the setting's doing
     draped.start = first.start;
     return draped;

@@ -57,7 +57,8 @@ int run(const Options& options) {
   const rig::Character character = rig::import_character(options.character, options.import).character;
   const rig::Skeleton& skeleton = character.skeleton;
   const fs::path begin = options.motion.empty() ? file : fs::path(options.motion); // work goes on where it was left
-  EditState start = !options.motion.empty() || fs::exists(begin) ? edit_state(rig::read_clip(begin), skeleton)
+  std::vector<std::string> notes;
+  EditState start = !options.motion.empty() || fs::exists(begin) ? edit_state(rig::read_clip(begin, &notes), skeleton)
                                                                  : edit_state_at_rest(skeleton, file.stem().string());
   seek(start, skeleton, options.time);
   std::vector<rig::JointLimit> limits;
@@ -70,6 +71,7 @@ int run(const Options& options) {
 
   Editor editor(character, std::move(start), file, std::move(limits));
   if (joint) editor.select(*joint);
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
   if (!editor.message().empty()) fmt::print(stderr, "note: {}\n", editor.message());
   if (editor.question() == EditorQuestion::take_up_autosave)
     fmt::print("found unsaved work of an earlier session: {}\n", editor.autosave().file().string());

@@ -56,6 +56,9 @@ int run(const Options& options) {
     return !interrupted();
   });
   bar.finish();
+  if (const auto note = proxies::note_of(validation.census);
+      note && !scene.collides_with_body()) // else said when loaded
+    fmt::print(stderr, "note: {}: {}\n", scene.files.character.filename().string(), *note);
   std::optional<Verdict> verdict;
   if (options.tolerance_mm)
     verdict = judge(validation, 1e-3 * *options.tolerance_mm, judge_named(options.judge), options.reach);

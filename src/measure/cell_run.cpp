@@ -164,13 +164,14 @@ Trajectory::Moment moment_of(const Session& session) {
 
 double touching_distance(const cloth::Garment& garment) { return garment.fabric.contact_offset() + k_contact_slack; }
 
-Protocol at_rate(const Protocol& protocol, int scene_rate, int rate) {
+Protocol at_rate(const Protocol& protocol, double scene_rate, double rate) {
   const auto convert = [&](int frames) {
-    const std::int64_t product = std::int64_t{frames} * rate;
-    if (product % scene_rate != 0)
-      throw InputError("", "frames_per_second", std::to_string(rate),
+    constexpr double k_rounding = 1e-6; // of a frame: rates have fractions, 59.94 is twice 29.97
+    const double converted = frames * rate / scene_rate;
+    if (std::abs(converted - std::round(converted)) > k_rounding)
+      throw InputError("", "frames_per_second", fmt::format("{}", rate),
                        fmt::format("a rate at which {} frames of {} a second are whole frames", frames, scene_rate));
-    return static_cast<int>(product / scene_rate);
+    return static_cast<int>(std::lround(converted));
   };
   return {convert(protocol.frames), convert(protocol.settle), convert(protocol.held), convert(protocol.every)};
 }

@@ -26,7 +26,7 @@ struct Protocol {
 };
 
 /// The same spans of time at another rate. Throws InputError where they are no whole frames.
-Protocol at_rate(const Protocol& protocol, int scene_rate, int rate);
+Protocol at_rate(const Protocol& protocol, double scene_rate, double rate);
 
 /// What two runs of one scene are compared by.
 struct Trajectory {

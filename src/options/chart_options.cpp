@@ -8,6 +8,7 @@
 #include "src/study/chart/settings_grid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
@@ -16,9 +17,11 @@
 namespace tutu::app {
 namespace {
 
-/// Whole frames at the scene's rate and at the report's, that all settings are compared at the same moments.
-Protocol usual_protocol(int rate, int frames_of_motion, bool quick) {
-  const int unit = rate / std::gcd(rate, k_report_rate); // frames
+/// Whole frames at the scene's rate and at the report's, that all settings are compared at the same moments (of a rate
+/// with fractions the report's is as far from its own whole rate: report_setting).
+Protocol usual_protocol(double rate, int frames_of_motion, bool quick) {
+  const int whole_rate = static_cast<int>(std::lround(rate));
+  const int unit = whole_rate / std::gcd(whole_rate, k_report_rate); // frames
   const auto whole = [&](double seconds) { return unit * std::max(1, static_cast<int>(seconds * rate / unit + 1e-9)); };
   if (quick) return {std::min(whole(k_trajectory_seconds), frames_of_motion), whole(0.5), whole(0.35), 2 * unit};
   return {std::max(unit, frames_of_motion / unit * unit), whole(1.0), whole(1.0), unit};

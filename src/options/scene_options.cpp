@@ -38,6 +38,9 @@ LoadedScene SceneOptions::load() const {
   description.changes = changes;
   LoadedScene loaded = load_scene(description);
   for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
+  if (loaded.collides_with_body())
+    if (const auto note = proxies::note_of(body_of(loaded.character).census()))
+      fmt::print(stderr, "note: {}: {}\n", loaded.files.character.filename().string(), *note);
   return loaded;
 }
 

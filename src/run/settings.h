@@ -9,7 +9,7 @@ namespace tutu::app {
 inline constexpr int k_most_threads = 256;
 
 struct RunSettings : cloth::SolverOptions {
-  int frames_per_second = 60;
+  double frames_per_second = 60.0;
   int substeps = 10;             ///< a frame,
   bool adaptive_substeps = true; ///< and more where something moves too fast for them
   int threads = 1;               ///< that step garments side by side; never more than there are garments

@@ -3,7 +3,9 @@
 #include "cloth/solver.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,8 +14,8 @@ namespace {
 
 using Settings = RunSettings;
 
-template <auto k_member> int get(const Settings& settings) { return static_cast<int>(settings.*k_member); }
-template <auto k_member> void set(Settings& settings, int value) {
+template <auto k_member> double get(const Settings& settings) { return static_cast<double>(settings.*k_member); }
+template <auto k_member> void set(Settings& settings, double value) {
   auto& member = settings.*k_member;
   member = static_cast<std::remove_reference_t<decltype(member)>>(value);
 }
@@ -32,7 +34,12 @@ template <auto k_member> constexpr SettingRow number(const Names& n, int least, 
 }
 template <auto k_member> constexpr SettingRow on_off(const Names& n) { return number<k_member>(n, 0, 1); }
 
-constexpr SettingRow except_for_drapes(SettingRow row, int (*drapes)(const Settings&)) {
+constexpr SettingRow with_fractions(SettingRow row) {
+  row.has_fractions = true;
+  return row;
+}
+
+constexpr SettingRow except_for_drapes(SettingRow row, double (*drapes)(const Settings&)) {
   row.drapes = drapes;
   return row;
 }
@@ -45,13 +52,13 @@ constexpr SettingRow k_table[] = {
                                                   "proxies",
                                                   "{}"},
                                                  proxies::k_backend_names),
-                      [](const Settings& s) { return s.backend == proxies::Backend::mesh ? 1 : 0; }),
+                      [](const Settings& s) { return s.backend == proxies::Backend::mesh ? 1.0 : 0.0; }),
     number<&Settings::substeps>({"substeps", "solver", "substeps", "substeps a frame", "{} substeps"}, 1, 10000),
     on_off<&Settings::adaptive_substeps>({"adaptive_substeps", "solver", "adaptive_substeps",
                                           "more substeps in frames where something moves too fast for those",
                                           "adaptive substeps {}"}),
-    number<&Settings::frames_per_second>(
-        {"frames_per_second", "solver", "frames_per_second", "frames a second", "{} frames/s"}, 1, 10000),
+    with_fractions(number<&Settings::frames_per_second>(
+        {"frames_per_second", "solver", "frames_per_second", "frames a second, as 29.97", "{} frames/s"}, 1, 10000)),
     choice<&Settings::features>({"features", "collision", "features",
                                  "what of the cloth meets colliders; auto: triangles where they could be reached "
                                  "between particles",
@@ -92,9 +99,12 @@ std::vector<std::string> setting_names() {
   return names;
 }
 
-std::string text_of(const SettingRow& row, int value) {
-  if (row.is_choice()) return std::string(row.names[value]);
-  return row.is_switch() ? (value ? "on" : "off") : std::to_string(value);
+std::string text_of(const SettingRow& row, double value) {
+  if (row.is_choice()) return std::string(row.names[static_cast<std::size_t>(value)]);
+  if (row.is_switch()) return value != 0.0 ? "on" : "off";
+  std::array<char, 64> digits{}; // the fewest that read back to the same bits
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::fixed).ptr;
+  return {digits.data(), end};
 }
 
 std::string expected_of(const SettingRow& row) {
@@ -102,26 +112,28 @@ std::string expected_of(const SettingRow& row) {
   return row.is_switch() ? "on or off" : fmt::format("from {} to {}", row.least, row.most);
 }
 
-std::optional<int> value_of(const SettingRow& row, std::string_view text) {
+std::optional<double> value_of(const SettingRow& row, std::string_view text) {
   if (row.is_choice()) {
     const auto found = std::find(row.names.begin(), row.names.end(), text);
     if (found == row.names.end()) return std::nullopt;
-    return static_cast<int>(found - row.names.begin());
+    return static_cast<double>(found - row.names.begin());
   }
   if (row.is_switch()) {
-    if (text == "on" || text == "true") return 1;
-    if (text == "off" || text == "false") return 0;
+    if (text == "on" || text == "true") return 1.0;
+    if (text == "off" || text == "false") return 0.0;
     return std::nullopt;
   }
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && number >= row.least && number <= row.most ? std::optional(number) : std::nullopt;
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed);
+  const bool read = error == std::errc() && end == text.data() + text.size();
+  const bool fits = number >= row.least && number <= row.most && (row.has_fractions || number == std::floor(number));
+  return read && fits ? std::optional(number) : std::nullopt;
 }
 
-int value_of(const SettingRow& row, const JsonValue& json) {
+double value_of(const SettingRow& row, const JsonValue& json) {
   if (row.is_choice()) return *value_of(row, json.string_among(row.names));
-  return row.is_switch() ? json.boolean() : json.integer_in(row.least, row.most);
+  if (row.is_switch()) return json.boolean() ? 1.0 : 0.0;
+  return row.has_fractions ? json.number_in(row.least, row.most) : json.integer_in(row.least, row.most);
 }
 
 std::string option_of(const SettingRow& row) {

@@ -6,6 +6,9 @@
 #include "rig/io/json_file.h"
 #include "src/run/settings.h"
 
+#include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,7 +17,8 @@
 
 namespace tutu::app {
 
-/// Values are whole numbers here: of a number itself, of a choice the place in `names`, of a switch 0 or 1.
+/// Values are numbers here: of a number itself, of a choice the place in `names`, of a switch 0 or 1. All are whole but
+/// those of a row that says otherwise.
 struct SettingRow {
   const char* name;                        ///< in settings files, of --split and in charts; as an option with - for _
   const char* section;                     ///< of a scene file, and
@@ -23,14 +27,15 @@ struct SettingRow {
   const char* said;                        ///< what people call a value: a format for its text
   std::span<const std::string_view> names; ///< of a choice; else none
   int least = 0, most = 1;
-  int (*get)(const RunSettings&) = nullptr;
-  void (*set)(RunSettings&, int) = nullptr;
+  double (*get)(const RunSettings&) = nullptr;
+  void (*set)(RunSettings&, double) = nullptr;
   /// What of it cloth that settles depends on; null: nothing.
-  int (*drapes)(const RunSettings&) = nullptr;
+  double (*drapes)(const RunSettings&) = nullptr;
+  bool has_fractions = false; ///< of a number: 29.97
 
   bool is_choice() const { return !names.empty(); }
   bool is_switch() const { return names.empty() && least == 0 && most == 1; }
-  int standard() const { return get(RunSettings{}); } ///< where nobody says anything
+  double standard() const { return get(RunSettings{}); } ///< where nobody says anything
 };
 
 std::span<const SettingRow> settings_table();
@@ -40,13 +45,13 @@ const SettingRow* find_setting(std::string_view name);
 std::vector<std::string> setting_names();
 
 /// A value as charts and the command line have it: "12", "xpbd", "on".
-std::string text_of(const SettingRow& row, int value);
+std::string text_of(const SettingRow& row, double value);
 /// What may be given: "from 1 to 100", "on or off", "one of: mass_spring, xpbd".
 std::string expected_of(const SettingRow& row);
 /// The value of a text (on, off, true and false for a switch); nothing where it is none.
-std::optional<int> value_of(const SettingRow& row, std::string_view text);
+std::optional<double> value_of(const SettingRow& row, std::string_view text);
 /// Of JSON: true and false for a switch. Throws InputError as JsonValue.
-int value_of(const SettingRow& row, const JsonValue& json);
+double value_of(const SettingRow& row, const JsonValue& json);
 
 /// As an option: "--self-collision".
 std::string option_of(const SettingRow& row);
@@ -58,7 +63,7 @@ void read_section(const JsonValue& json, std::string_view section, RunSettings& 
 /// One setting in place of the scene's, and who says so: an option of the command line, for messages.
 struct SettingChange {
   const SettingRow* row;
-  int value;
+  double value;
   std::string by;
 };
 
@@ -70,13 +75,16 @@ struct Unhonoured {
 std::optional<Unhonoured> unhonoured(const SettingRow& row, const RunSettings& settings,
                                      std::span<const cloth::Garment> garments);
 
-/// Calls add(number) for all that cloth that settles depends on. Nothing for a setting at its standard, so that a new
-/// one changes no hash of what was made before there was any.
+/// Calls add(number) with whole numbers for all that cloth that settles depends on. Nothing for a setting at its
+/// standard, so that a new one changes no hash of what was made before there was any.
 template <class Add> void for_each_draping(const RunSettings& settings, const Add& add) {
   for (const SettingRow& row : settings_table()) {
     if (!row.drapes || row.drapes(settings) == row.drapes(RunSettings{})) continue;
     for (const char c : std::string_view(row.name)) add(c);
-    add(row.drapes(settings));
+    const double value = row.drapes(settings);
+    if (value == std::floor(value)) add(static_cast<int>(value));
+    else
+      for (const std::int32_t half : std::bit_cast<std::array<std::int32_t, 2>>(value)) add(half);
   }
 }
 

@@ -42,7 +42,7 @@ rig::Clip retargeted(const rig::Clip& clip, const rig::Skeleton& source, const r
 
 /// Puts the clip on the character, by way of the skeleton it was made for when that is another one.
 rig::Clip clip_for(const ClipMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
-  const rig::RawClip raw = rig::read_clip(motion.clip);
+  const rig::RawClip raw = rig::read_clip(motion.clip, &notes);
   if (!motion.retarget_from) return build(raw, skeleton);
   const rig::Skeleton source = rig::import_character(*motion.retarget_from).character.skeleton;
   return retargeted(build(raw, source), source, skeleton, motion.clip, notes);
@@ -51,6 +51,7 @@ rig::Clip clip_for(const ClipMotion& motion, const rig::Skeleton& skeleton, std:
 rig::Clip clip_for(const MocapMotion& motion, const rig::Skeleton& skeleton, std::vector<std::string>& notes) {
   rig::Mocap take = rig::read_bvh(motion.bvh, motion.options);
   rig::rename_joints(take.skeleton, motion.joints, motion.bvh.string());
+  for (const std::string& note : take.notes) notes.push_back(motion.bvh.filename().string() + ": " + note);
   return retargeted(take.clip, take.skeleton, skeleton, motion.bvh, notes);
 }
 
@@ -80,12 +81,8 @@ rig::Motion load_motion(const SceneDescription& description, const rig::Import& 
   const rig::Skeleton& skeleton = import.character.skeleton;
   if (const auto* own = std::get_if<OwnMotion>(&description.motion))
     return own_animation(*own, import, description.file.string());
-  if (const auto* texts = std::get_if<rig::ThreeTexts>(&description.motion)) {
-    std::string unit_note;
-    rig::Clip clip = build(rig::read_three_texts(*texts, skeleton, &unit_note), skeleton);
-    if (!unit_note.empty()) notes.push_back(unit_note);
-    return clip;
-  }
+  if (const auto* texts = std::get_if<rig::ThreeTexts>(&description.motion))
+    return build(rig::read_three_texts(*texts, skeleton, &notes), skeleton);
   if (const auto* mocap = std::get_if<MocapMotion>(&description.motion)) return clip_for(*mocap, skeleton, notes);
   return clip_for(std::get<ClipMotion>(description.motion), skeleton, notes);
 }

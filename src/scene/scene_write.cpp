@@ -4,6 +4,7 @@
 #include "src/base/json_text.h"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace tutu::app {
@@ -88,10 +89,11 @@ void write_scene(const SceneDescription& d, const fs::path& file, const std::str
   else json["ground"] = {{"height", *d.ground_height}};
   // What is left out is the standard; what the file would say of no use is refused when it is read.
   for (const SettingRow& row : settings_table()) {
-    const int value = row.get(d.settings);
+    const double value = row.get(d.settings);
     if (value == row.standard() && std::find(d.stated.begin(), d.stated.end(), &row) == d.stated.end()) continue;
-    if (row.is_choice()) json[row.section][row.key] = row.names[value];
-    else if (row.is_switch()) json[row.section][row.key] = value != 0;
+    if (row.is_choice()) json[row.section][row.key] = row.names[static_cast<std::size_t>(value)];
+    else if (row.is_switch()) json[row.section][row.key] = value != 0.0;
+    else if (value == std::floor(value)) json[row.section][row.key] = static_cast<int>(value);
     else json[row.section][row.key] = value;
   }
   json["drape"] = paths(d.drape);

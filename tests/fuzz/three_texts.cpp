@@ -18,8 +18,8 @@ void fuzz_three_texts(std::string_view input) {
   if (!input.empty()) files.joints = write_input(input, "joints.txt");
 
   const rig::Skeleton& skeleton = small_character().skeleton;
-  std::string note;
-  const rig::RawClip raw = rig::read_three_texts(files, skeleton, &note);
+  std::vector<std::string> notes;
+  const rig::RawClip raw = rig::read_three_texts(files, skeleton, &notes);
   const rig::Clip clip = rig::build_clip(raw, skeleton);
   require_poses(clip.local, "poses of three texts are finite");
   const rig::ThreeTexts written = {scratch() / "t.txt", scratch() / "q.txt", scratch() / "k.txt", scratch() / "j.txt"};

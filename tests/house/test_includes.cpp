@@ -21,6 +21,7 @@ namespace {
 const std::vector<std::vector<std::string>> k_rows = {
     {"rig/detail"},
     {"rig"},
+    {"rig/io/detail"},
     {"rig/io"},
     {"rig/import/detail", "rig/mannequin/detail"},
     {"rig/import/curves"},

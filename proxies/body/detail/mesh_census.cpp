@@ -18,6 +18,9 @@ constexpr double k_turned_share = 0.01;
 constexpr double k_off_surface = 1e-6; ///< how far off a triangle its sides are looked at, as a share of sqrt(area)
 constexpr std::size_t k_shell_samples = 256; ///< vertices of a shell that are asked whether others hold it
 
+constexpr const char* k_outward = "triangles that run counter-clockwise seen from outside: recalculate its normals to "
+                                  "the outside where it was modelled";
+
 [[noreturn]] void refuse(const std::string& found, const std::string& expected) {
   throw std::invalid_argument("body mesh: found " + found + ", expected " + expected);
 }
@@ -152,17 +155,19 @@ MeshFindings take_census(std::span<const Vec3> positions, std::span<const rig::T
   }
 
   if (!(census.area > 0.0)) refuse("no triangle with an area", "a surface");
-  if (topology.one_sided_edges > 0) refuse("a one-sided surface", "a body");
+  if (topology.one_sided_edges > 0)
+    refuse("a one-sided surface", "a body: take out what hangs on it by one edge or twists back onto itself");
   if (turned_area > k_turned_share * census.area)
     refuse(percent(turned_area / census.area) + " of the surface turned over against its neighbours (" +
                count_of(census.turned_triangles, "triangle", "triangles") + ')',
-           "triangles that all run counter-clockwise seen from outside");
-  if (enclosed <= k_least_volume * std::pow(census.area, 1.5)) refuse("a surface that encloses nothing", "a body");
-  if (census.volume < 0.0) refuse("a body turned inside out", "triangles that run counter-clockwise seen from outside");
+           k_outward);
+  if (enclosed <= k_least_volume * std::pow(census.area, 1.5))
+    refuse("a surface that encloses nothing", "a body: give it thickness, or delete the one of doubled triangles");
+  if (census.volume < 0.0) refuse("a body turned inside out", k_outward);
   if (inverted_volume > k_turned_share * enclosed)
     refuse(count_of(census.inverted_shells, "shell", "shells") + " with " + percent(inverted_volume / enclosed) +
                " of the volume turned inside out",
-           "triangles that run counter-clockwise seen from outside");
+           k_outward);
   choose_rule(census);
   if (census.rule == SideRule::winding_number) return found;
   const int buried = mesh.buried(k_off_surface * std::sqrt(census.area), winding);

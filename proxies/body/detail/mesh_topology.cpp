@@ -159,17 +159,26 @@ MeshTopology find_topology(std::span<const Vec3f> bind_positions, std::span<cons
 
   const std::vector<HalfEdge> edges = half_edges(topology.corners);
   Sets shells(triangles.size()), patches(triangles.size());
+  std::vector<int> not_joined, twisted; // triangles with an edge that does not join two, or joins them to one side
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t next = i + 1;
     for (; next < edges.size() && edges[next].low == edges[i].low && edges[next].high == edges[i].high; ++next)
       shells.join(edges[i].triangle, edges[next].triangle, false);
-    if (next == i + 1) ++topology.open_edges;
-    else if (next > i + 2) ++topology.nonmanifold_edges;
-    else if (!patches.join(edges[i].triangle, edges[i + 1].triangle, edges[i].rises == edges[i + 1].rises))
-      ++topology.one_sided_edges;
+    const bool joins_two = next == i + 2;
+    const bool one_sided =
+        joins_two && !patches.join(edges[i].triangle, edges[i + 1].triangle, edges[i].rises == edges[i + 1].rises);
+    topology.open_edges += next == i + 1;
+    topology.nonmanifold_edges += next > i + 2;
+    topology.one_sided_edges += one_sided;
+    if (!joins_two) not_joined.push_back(edges[i].triangle);
+    if (one_sided) twisted.push_back(edges[i].triangle);
     i = next;
   }
   find_shells(topology, shells);
+  topology.closed.assign(topology.shells(), true);
+  topology.one_sided.assign(topology.shells(), false);
+  for (const int t : not_joined) topology.closed[topology.shell_of[t]] = false;
+  for (const int t : twisted) topology.one_sided[topology.shell_of[t]] = true;
   find_turned(topology, patches);
   for (std::uint32_t p = 0; p < static_cast<std::uint32_t>(topology.places); ++p)
     topology.pinched_vertices += is_pinched(topology, p);

@@ -19,7 +19,9 @@ struct MeshTopology {
   std::vector<int> by_shell;       ///< triangles, shell after shell, rising in each
 
   int open_edges = 0, nonmanifold_edges = 0, pinched_vertices = 0;
-  int one_sided_edges = 0;  ///< where a surface comes back to itself the other way round (Moebius)
+  int one_sided_edges = 0;             ///< where a surface comes back to itself the other way round (Moebius)
+  std::vector<bool> closed, one_sided; ///< shell: each of its edges joins two triangles; it is joined to itself the
+                                       ///< other way round somewhere
   std::vector<bool> turned; ///< triangle: runs against most (by number) of those it is joined to by manifold edges
 
   int shells() const { return static_cast<int>(first_of_shell.size()) - 1; }

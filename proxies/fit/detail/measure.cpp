@@ -233,7 +233,7 @@ FitError measure_fit(const rig::Character& character, const std::vector<std::vec
   for (int p = 0; p < error.poses; ++p) {
     rig::skin_vertices_reference(character.mesh, character.skin, poses[p], positions, normals);
     mesh.pose(positions);
-    if (together.empty()) together = neighbours_together(positions, character.mesh.triangles);
+    if (together.empty()) together = neighbours_together(positions, mesh.triangles());
     const Winding winding(positions, together);
     const Scene scene{shapes, p, mesh, winding, in_region};
     known = under_bound(scene, known);

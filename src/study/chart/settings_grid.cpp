@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <functional>
@@ -104,7 +105,9 @@ Setting report_setting(const RunSettings& scene, const std::string& proxies) {
   setting.name = "report";
   setting.solver = cloth::SolverKind::mass_spring;
   setting.substeps = 5;
-  setting.frames_per_second = k_report_rate;
+  // Of a scene at 29.97 in place of 30, 39.96: only so do both have frames at the same moments.
+  const double rate = scene.frames_per_second;
+  setting.frames_per_second = k_report_rate * rate / std::round(rate);
   setting.adaptive_substeps = false;
   setting.proxies = proxies;
   return setting;

@@ -19,7 +19,8 @@ std::vector<Setting> read_settings(const std::filesystem::path& file, const RunS
 
 inline constexpr int k_report_rate = 40; ///< frames a second: of 5 substeps of 5 ms each
 
-/// The setting of the report: mass_spring, 5 substeps of 5 ms, `proxies` placed by hand.
+/// The setting of the report: mass_spring, 5 substeps of 5 ms, `proxies` placed by hand. Where the scene's rate has
+/// fractions, k_report_rate is to the report's what the scene's is to its own nearest whole one.
 Setting report_setting(const RunSettings& scene, const std::string& proxies);
 
 /// What is built in: solvers, substeps, backends, features, grid sizes and proxies around the scene's own setting,

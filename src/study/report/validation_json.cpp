@@ -62,6 +62,7 @@ ordered_json census_json(const proxies::MeshCensus& census, double buried_share)
           {"shells", census.shells},
           {"open_edges", census.open_edges},
           {"nonmanifold_edges", census.nonmanifold_edges},
+          {"mended_triangles", census.mended_triangles},
           {"side_rule", census.rule == proxies::SideRule::pseudonormal ? "pseudonormal" : "winding number"},
           {"reason", census.reason},
           {"buried_share", buried_share}};

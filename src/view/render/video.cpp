@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <fcntl.h>
@@ -56,6 +57,15 @@ std::string last_line(int descriptor) {
   return start == std::string::npos ? text : text.substr(start + 1);
 }
 
+/// A rate as ffmpeg takes it. 23.976, 29.97 and 59.94 are short for 1000/1001 of 24, 30 and 60 [SMPTE 12M]: a film at
+/// the decimals would drift, and players would not know it.
+std::string rate_text(double rate) {
+  constexpr double k_rounding = 5e-4; // of what people write
+  const double of_television = std::round(rate * 1.001);
+  const bool is_short = rate != std::round(rate) && std::abs(of_television / 1.001 - rate) < k_rounding;
+  return is_short ? fmt::format("{:.0f}/1001", 1000.0 * of_television) : fmt::format("{:.6f}", rate);
+}
+
 } // namespace
 
 struct VideoWriter::Encoder {
@@ -92,7 +102,7 @@ void VideoWriter::Encoder::start(int width, int height, double frames_per_second
       "ffmpeg", "-hide_banner", "-nostdin", "-loglevel", "error", "-y",
       // What comes in
       "-f", "rawvideo", "-pixel_format", "rgb24", "-video_size", fmt::format("{}x{}", width, height), "-framerate",
-      fmt::format("{:.6f}", frames_per_second), "-i", "pipe:0",
+      rate_text(frames_per_second), "-i", "pipe:0",
       // What goes out
       "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p", "-c:v",
       "libx264", "-preset", "veryfast", "-crf", "17", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc",

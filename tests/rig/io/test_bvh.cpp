@@ -125,7 +125,6 @@ TEST(Bvh, WhatIsMalformedIsToldWithItsLine) {
               HasSubstr("line 17: found no frames, expected at least one"));
   EXPECT_THAT(error_of(replaced(".25", "0")), HasSubstr("a time above 0"));
   EXPECT_THAT(error_of(replaced("5 70", "nan 70")), HasSubstr("line 21"));
-  EXPECT_THAT(error_of(replaced("JOINT Chest", "JOINT Hips")), HasSubstr("joint Hips: found the name twice"));
   EXPECT_THAT(error_of(k_take, {.rest_frame = 3, .from = 0.0, .to = {}}), HasSubstr("the rest frame 3"));
   EXPECT_THAT(error_of(k_take, {.rest_frame = {}, .from = 9.0, .to = {}}), HasSubstr("0.75"));
   const std::string whole = k_take;

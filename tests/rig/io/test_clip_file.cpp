@@ -216,7 +216,7 @@ protected:
     write_file(files.rotations, rotations);
     write_file(files.times, times);
     if (!joints.empty()) write_file(*(files.joints = folder / "joints.txt"), joints);
-    return read_three_texts(files, small_skeleton(), &note);
+    return read_three_texts(files, small_skeleton(), &notes);
   }
   std::string read_error(const std::string& translations, const std::string& rotations, const std::string& times,
                          const std::string& joints = "") {
@@ -225,13 +225,13 @@ protected:
 
   fs::path folder;
   ThreeTexts files;
-  std::string note;
+  std::vector<std::string> notes;
 };
 
 TEST_F(ThreeTextFiles, ReadInSkeletonOrder) {
   const RawClip clip = read("0 1 0 0.1 -0.05 0 0 -0.45 0 0 0.2 0\n\t+0 1.5  0 1e-1 -5E-2 0 0 -0.45 0 0 0.2 0 \r\n\n",
                             std::string(k_identity_line) + "0 0 0.6 0.8 0 0 0 1 0 0 0 1 1 0 0 0", "0 0.5");
-  EXPECT_EQ(note, "");
+  EXPECT_THAT(notes, testing::IsEmpty());
   EXPECT_EQ(clip.name, "t");
   ASSERT_EQ(clip.keys.size(), 2u);
   EXPECT_EQ(clip.keys[1].time, 0.5);
@@ -264,8 +264,8 @@ TEST_F(ThreeTextFiles, RoundTripKeepsEveryBit) {
     const RawClip clip = test::random_clip(random, skeleton, 5);
     files.joints = folder / "joints.txt";
     write_three_texts(clip, skeleton, files);
-    expect_same_joints(clip, read_three_texts(files, skeleton, &note));
-    EXPECT_EQ(note, "");
+    expect_same_joints(clip, read_three_texts(files, skeleton, &notes));
+    EXPECT_THAT(notes, testing::IsEmpty());
     files.joints.reset();
     expect_same_joints(clip, read_three_texts(files, skeleton, nullptr));
   }
@@ -300,9 +300,9 @@ TEST_F(ThreeTextFiles, OtherUnitsAreRecognisedByTheBones) {
         }
       }
       write_three_texts(scaled, skeleton, files);
-      note.clear();
-      const RawClip back = read_three_texts(files, skeleton, &note);
-      EXPECT_THAT(note, HasSubstr(unit.name));
+      notes.clear();
+      const RawClip back = read_three_texts(files, skeleton, &notes);
+      EXPECT_THAT(notes, testing::ElementsAre(HasSubstr(unit.name)));
       for (std::size_t k = 0; k < 3; ++k)
         for (const auto& [name, joint] : clip.keys[k].joints)
           EXPECT_LT((*back.keys[k].joints.at(name).translation - *joint.translation).norm(), 1e-14);
@@ -324,12 +324,41 @@ TEST_F(ThreeTextFiles, ASkeletonOfRootsTellsNoUnit) {
   write_file(files.translations, "0 100 0");
   write_file(files.rotations, "0 0 0 1");
   write_file(files.times, "0");
-  EXPECT_EQ(read_three_texts(files, root, &note).keys[0].joints.at("Hips").translation, Vec3(0, 100, 0));
+  EXPECT_EQ(read_three_texts(files, root, &notes).keys[0].joints.at("Hips").translation, Vec3(0, 100, 0));
 }
 
 TEST_F(ThreeTextFiles, RotationsOfFewDigitsAreNormalised) {
-  const RawClip clip = read(k_rest_line, "0 0 0.70711 0.70711 0 0 0 1.004 0 0 0 1 0 0 0 1", "0");
+  const RawClip clip = read(k_rest_line, "0 0 0.70711 0.70711 0 0 0 1.0009 0 0 0 1 0 0 0 1", "0");
   for (const auto& [name, joint] : clip.keys[0].joints) EXPECT_NEAR(joint.rotation->norm(), 1.0, 1e-15);
+  EXPECT_THAT(notes, testing::IsEmpty());
+}
+
+TEST_F(ThreeTextFiles, RotationsOffUnitLengthAreNormalisedWithOneNote) {
+  const std::string t = k_rest_line, q = k_identity_line;
+  const RawClip clip = read(t + t, q + "0 0 0.588 0.784 0 0 0 1 0 0 0 1 0 0 0 1", "0 1");
+  EXPECT_LT((clip.keys[1].joints.at("Hips").rotation->coeffs() - Eigen::Vector4d(0, 0, 0.6, 0.8)).norm(), 1e-15);
+  EXPECT_THAT(notes, testing::ElementsAre(files.rotations.string() +
+                                          ": 1 of 8 rotations was not of unit length (0.98): normalised"));
+  notes.clear();
+  read(t, "0 0 0 1.1 0 0 0 0.9 0 0 0 1.05 -1 0 0 0", "0");
+  EXPECT_THAT(notes, testing::ElementsAre(HasSubstr("3 of 4 rotations were not of unit length (the farthest ")));
+  for (const char* length : {"1.11", "0.89", "1e9"})
+    EXPECT_THAT(read_error(t, "0 0 0 1 0 0 0 1 0 0 0 1 0 0 0 " + std::string(length), "0"),
+                HasSubstr("for joint Spine, expected a unit quaternion x y z w (up to 10 % off is normalised"))
+        << length;
+}
+
+TEST(ClipFile, RotationsOffUnitLengthAreNormalisedWithOneNote) {
+  const fs::path folder = test::scratch_folder(), file = folder / "clip.json";
+  write_file(file, R"({"keys": [{"time": 0, "joints": {"A": {"rotation": [0, 0.588, 0, 0.784]},
+                                                       "B": {"rotation": [0, 0, 0, 1]}}}]})");
+  std::vector<std::string> notes;
+  const RawClip clip = read_clip(file, &notes);
+  EXPECT_LT((clip.keys[0].joints.at("A").rotation->coeffs() - Eigen::Vector4d(0, 0.6, 0, 0.8)).norm(), 1e-15);
+  EXPECT_THAT(notes,
+              testing::ElementsAre(file.string() + ": 1 of 2 rotations was not of unit length (0.98): normalised"));
+  check(clip); // as it can be played
+  fs::remove_all(folder);
 }
 
 TEST_F(ThreeTextFiles, ErrorsTellFileLineFoundAndExpected) {
@@ -352,7 +381,7 @@ TEST_F(ThreeTextFiles, ErrorsTellFileLineFoundAndExpected) {
   EXPECT_THAT(read_error("", q, "0"), HasSubstr("t.txt: found an empty file"));
   EXPECT_THAT(read_error(t, q, " \n"), HasSubstr("times.txt: found an empty file"));
   files.times = folder / "missing.txt";
-  EXPECT_THAT(error_of([&] { read_three_texts(files, small_skeleton(), &note); }),
+  EXPECT_THAT(error_of([&] { read_three_texts(files, small_skeleton(), &notes); }),
               HasSubstr("missing.txt: found no such file"));
 }
 

@@ -5,6 +5,7 @@
 #include "src/run/drape.h"
 #include "src/scene/load.h"
 #include "src/scene/saved_drape.h"
+#include "src/scene/scene_write.h"
 #include "tests/support/paths.h"
 
 #include <gmock/gmock.h>
@@ -65,6 +66,31 @@ TEST(Drape, FingerprintSeesWhatMatters) {
   scene = dance();
   scene.ground_height = 0.01;
   EXPECT_NE(drape_fingerprint(scene), before);
+}
+
+TEST(SceneFile, SaysHowACharacterIsToBeRead) {
+  const auto folder = scratch_folder();
+  for (const char* name : {"a.dae", "m.json"}) write_file(folder / name, "");
+  const auto read = [&](const std::string& more) {
+    write_file(folder / "s.json", R"({"character": {"file": "a.dae")" + more + R"(}, "motion": "m.json"})");
+    return read_scene(folder / "s.json");
+  };
+  EXPECT_EQ(read("").import.rest, rig::RestPose::bind);
+  EXPECT_EQ(read(R"(, "height": 1.72)").import.height, 1.72);
+  EXPECT_EQ(read(R"(, "unit": "cm")").import.metres_per_unit, 0.01);
+  EXPECT_EQ(read(R"(, "unit": 0.0254)").import.metres_per_unit, 0.0254);
+  EXPECT_EQ(read(R"(, "rest": "node")").import.rest, rig::RestPose::node);
+  for (const char* wrong : {R"(, "height": 0)", R"(, "height": "1.7 m")", R"(, "unit": "yards")", R"(, "unit": -1)",
+                            R"(, "rest": "t-pose")", R"(, "height": 1.7, "unit": "cm")", R"(, "size": 1.7)"})
+    EXPECT_THROW(read(wrong), InputError) << wrong;
+
+  SceneDescription scene = read(R"(, "unit": "cm", "rest": "node", "max_influences": 8)");
+  write_scene(scene, folder / "t.json");
+  const SceneDescription again = read_scene(folder / "t.json");
+  EXPECT_EQ(again.import.metres_per_unit, 0.01);
+  EXPECT_EQ(again.import.rest, rig::RestPose::node);
+  EXPECT_EQ(again.import.max_influences, 8);
+  EXPECT_EQ(again.character, folder / "a.dae");
 }
 
 TEST(SceneFile, ReadsEveryFormOfMotion) {

@@ -23,7 +23,7 @@ using ::testing::HasSubstr;
 namespace {
 
 /// A value besides the standard one.
-int another(const SettingRow& row) { return row.standard() == row.most ? row.least : row.standard() + 1; }
+double another(const SettingRow& row) { return row.standard() == row.most ? row.least : row.standard() + 1; }
 
 TEST(SettingsTable, EachRowReadsAndWritesOneMember) {
   for (const SettingRow& row : settings_table()) {
@@ -42,20 +42,44 @@ TEST(SettingsTable, EachRowReadsAndWritesOneMember) {
 
 TEST(SettingsTable, TextsAreValuesAndNothingElseIs) {
   for (const SettingRow& row : settings_table()) {
-    for (const int value : {row.least, row.standard(), another(row), row.most})
+    for (const double value : {1.0 * row.least, row.standard(), another(row), 1.0 * row.most})
       EXPECT_EQ(value_of(row, text_of(row, value)), value) << row.name;
     for (const char* none : {"", " ", "magic", "-1", "1e3", "3x", "100000000000000000000"})
       EXPECT_FALSE(value_of(row, none)) << row.name << none;
     if (row.is_choice() || row.is_switch()) continue;
     EXPECT_FALSE(value_of(row, std::to_string(row.least - 1)));
     EXPECT_FALSE(value_of(row, std::to_string(row.most + 1)));
+    EXPECT_EQ(value_of(row, "29.97"), row.has_fractions ? std::optional(29.97) : std::nullopt) << row.name;
+    for (const char* bad : {"0", "-29.97", "nan", "inf", "1000000000", "29.97.1", "29,97"})
+      EXPECT_FALSE(value_of(row, bad)) << row.name << bad;
   }
+}
+
+TEST(SettingsTable, ARateMayHaveFractions) {
+  const SettingRow& row = *find_setting("frames_per_second");
+  for (const char* rate : {"29.97", "23.976", "59.94", "12.5", "1", "60", "10000"})
+    EXPECT_EQ(text_of(row, *value_of(row, rate)), rate);
+  RunSettings settings;
+  row.set(settings, 29.97);
+  EXPECT_EQ(settings.frame_seconds(), 1.0 / 29.97);
+  // What a drape depends on: of whole rates the number, so that hashes stay what they were.
+  const auto numbers = [](const RunSettings& of) {
+    std::vector<int> all;
+    for_each_draping(of, [&](int number) { all.push_back(number); });
+    return all;
+  };
+  EXPECT_TRUE(numbers({}).empty());
+  const std::size_t name = std::string_view("frames_per_second").size();
+  EXPECT_EQ(numbers(settings).size(), name + 2);
+  row.set(settings, 30);
+  EXPECT_EQ(numbers(settings).size(), name + 1);
+  EXPECT_EQ(numbers(settings).back(), 30);
 }
 
 json schema_of(const SettingRow& row) {
   if (row.is_choice()) return {{"enum", row.names}};
   if (row.is_switch()) return {{"type", "boolean"}};
-  return {{"type", "integer"}, {"minimum", row.least}, {"maximum", row.most}};
+  return {{"type", row.has_fractions ? "number" : "integer"}, {"minimum", row.least}, {"maximum", row.most}};
 }
 
 TEST(SettingsTable, SchemasSayTheSame) {

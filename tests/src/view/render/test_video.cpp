@@ -1,4 +1,5 @@
 // Films, progress lines and Ctrl-C.
+#include "rig/io/file_io.h"
 #include "src/base/interrupt.h"
 #include "src/base/progress.h"
 #include "src/view/render/video.h"
@@ -85,6 +86,24 @@ TEST(Video, IsPlayable) {
   for (const char* fact :
        {"codec_name=h264", "pix_fmt=yuv420p", "width=66", "height=48", "nb_read_frames=12", "r_frame_rate=25/1"})
     EXPECT_THAT(facts, ::testing::HasSubstr(fact));
+  fs::remove_all(folder);
+}
+
+TEST(Video, RatesOfTelevisionAreTakenForWhatTheyAre) {
+  const fs::path folder = test::scratch_folder();
+  const ScopedPath path(fake_ffmpeg(folder, "echo \"$@\" > '" + (folder / "words").string() + "'; cat > /dev/null\n"));
+  for (const auto& [rate, text] : {std::pair{29.97, "30000/1001"},
+                                   {23.976, "24000/1001"},
+                                   {59.94, "60000/1001"},
+                                   {30000.0 / 1001.0, "30000/1001"},
+                                   {60.0, "60.000000"},
+                                   {12.5, "12.500000"},
+                                   {1000.0, "1000.000000"}}) {
+    VideoWriter film(folder / "a.mp4", 64, 48, rate);
+    film.add(plain(64, 48, 9));
+    error_of([&] { film.finish(); }); // of a film that nobody wrote
+    EXPECT_THAT(read_file(folder / "words"), ::testing::HasSubstr(std::string("-framerate ") + text + " ")) << rate;
+  }
   fs::remove_all(folder);
 }
 
