@@ -48,6 +48,12 @@ TEST_P(AnimatedFbxModels, AgreeAtTheirKeysWithTheReaderOfMeshes) {
   const FbxMotion motion = fbx_motion(read_file(file), nodes);
   ASSERT_EQ(motion.unread, "");
   ASSERT_EQ(motion.animations.size(), scene->mNumAnimations);
+  EXPECT_EQ(motion.locals.size(), nodes.size() - 1);
+  for (const auto& [node, local] : motion.locals) {
+    const Affine& expected = nodes[static_cast<std::size_t>(node)].local;
+    EXPECT_LT((local.matrix() - expected.matrix()).cwiseAbs().maxCoeff(),
+              1e-6 * expected.matrix().cwiseAbs().maxCoeff());
+  }
   int compared = 0;
   for (unsigned a = 0; a < scene->mNumAnimations; ++a) {
     const aiAnimation& expected = *scene->mAnimations[a];
