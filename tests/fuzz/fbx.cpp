@@ -19,7 +19,8 @@ void fuzz_fbx(std::string_view input) {
     require(!detail::with_unique_names(unique->bytes), "unique names are unique");
     detail::check_fbx_names("motion.fbx", unique->bytes);
   }
-  if (!motion.unread.empty()) throw InputError("motion.fbx", "", "a file " + motion.unread, "an FBX file");
+  if (!motion.unread.empty())
+    throw InputError("motion.fbx", "", "a file that cannot be read (" + motion.unread + ")", "an FBX file");
 }
 
 } // namespace tutu::fuzz

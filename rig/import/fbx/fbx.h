@@ -16,6 +16,9 @@ namespace tutu::rig::import_detail {
 struct FbxMotion {
   /// One a take, in the order of the file; takes that move no model are left out. Empty where it could not be read.
   std::vector<FileAnimation> animations;
+  /// parent_from_node as the file says the models stand, by node. assimp 5.2.5 differs where it turns a post-rotation
+  /// the wrong way round, and where it heeds rotations and orders that the file says are not active.
+  std::map<int, Affine> locals;
   std::string unread; ///< why the motion cannot be read soundly ("of version 6100"); else empty
 };
 

@@ -32,7 +32,7 @@ struct FbxModel {
   Quat rotation_at(double time, Side side) const; ///< of it
 };
 
-/// As the model stands.
+/// As the model stands. Throws FbxUnreadable on numbers that are none.
 FbxModel model_of(const FbxDocument& document, const FbxObject& model);
 
 /// Of a model in a take, whose numbers may be others than those it stands with in the file; what stays as it stands is

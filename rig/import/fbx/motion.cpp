@@ -232,6 +232,12 @@ FbxMotion fbx_motion(std::string_view bytes, const std::vector<FileNode>& nodes)
     const FbxDocument document(bytes);
     const NodesOfModels nodes_of_models(document, nodes);
     for (const FbxObject& object : document.objects()) {
+      const int node = object.kind == "Model" ? nodes_of_models.node_of(object.id) : -1;
+      if (node < 0) continue;
+      const Pose pose = model_of(document, object).at(0.0, Side::behind);
+      result.locals.emplace(node, Eigen::Translation3d(pose.translation) * pose.rotation * Eigen::Scaling(pose.scale));
+    }
+    for (const FbxObject& object : document.objects()) {
       if (object.kind != "AnimationStack") continue;
       std::optional<FileAnimation> take = TakeReader(document, nodes_of_models).read(object);
       if (!take) continue;
@@ -239,9 +245,9 @@ FbxMotion fbx_motion(std::string_view bytes, const std::vector<FileNode>& nodes)
       result.animations.push_back(std::move(*take));
     }
   } catch (const FbxUnreadable& error) {
-    result = {{}, error.what()};
+    result = {{}, {}, error.what()};
   } catch (const std::length_error&) {
-    result = {{}, "with more turns than can be kept"};
+    result = {{}, {}, "with more turns than can be kept"};
   }
   return result;
 }

@@ -230,7 +230,9 @@ private:
 };
 
 inline FbxTestElement fbx_property(const std::string& name, const std::vector<double>& numbers) {
-  FbxTestElement property = {"P", {name, name, std::string(), std::string("A")}};
+  const bool is_local = name.starts_with("Lcl "); // else of the common type
+  FbxTestElement property = {
+      "P", {name, is_local ? name : "Vector3D", std::string(is_local ? "" : "Vector"), std::string("A")}};
   for (const double number : numbers) property.values.emplace_back(number);
   return property;
 }

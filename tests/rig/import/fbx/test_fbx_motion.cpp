@@ -185,6 +185,24 @@ TEST(FbxMotion, PivotsOrdersAndRotationsBeforeAndBehind) {
     }
 }
 
+TEST(FbxMotion, HowModelsStand) {
+  FbxTestFile file;
+  file.model("Joint", 0,
+             {fbx_property("RotationActive", 1), fbx_property("RotationOrder", 4),
+              fbx_property("PreRotation", {10, 20, 30}), fbx_property("PostRotation", {-40, 15, 5}),
+              fbx_property("Lcl Translation", {1, 2, 3}), fbx_property("Lcl Rotation", {50, -60, 70}),
+              fbx_property("Lcl Scaling", {1, 2, -3}), fbx_property("RotationPivot", {1, -1, 2}),
+              fbx_property("ScalingPivot", {2, 1, 0})});
+  const FbxMotion motion = fbx_motion(file.bytes(), k_nodes);
+  EXPECT_TRUE(motion.animations.empty());
+  ASSERT_EQ(motion.locals.size(), 1u) << motion.unread;
+  const Vec3 pivot(1, -1, 2), scaling_pivot(2, 1, 0);
+  const Eigen::Matrix4d expected = moved({1, 2, 3}) * moved(pivot) * turned({10, 20, 30}, "XYZ") *
+                                   turned({50, -60, 70}, "ZXY") * turned({-40, 15, 5}, "XYZ").inverse() *
+                                   moved(-pivot) * moved(scaling_pivot) * scaled({1, 2, -3}) * moved(-scaling_pivot);
+  EXPECT_LT((motion.locals.at(1).matrix() - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
 TEST(FbxMotion, AScaleAndATranslationAreKeptAsTheyAre) {
   const FbxTestCurve linear = {{0, 1, 2}, {1, 2, 0}, {k_linear, k_linear, k_linear}};
   const FbxTestCurve cubic = {{0, 2}, {3, 5}, {k_cubic | k_user, k_cubic | k_user}, {{as_word(9), 0, 0, 0}, {}}};
