@@ -65,6 +65,8 @@ TEST(GltfHostile, NothingAndNoise) {
   std::string deep = R"({"asset":{"version":"2.0"},"extras":)" + std::string(2'000'000, '{');
   EXPECT_NE(message_of_bytes(deep, "a.gltf"), "");
   EXPECT_EQ(message_of_bytes(R"({"asset":{"version":"2.0"}})", "a.gltf"), "");
+  EXPECT_THAT(message_of_bytes("{\"asset\":{\"version\":\"2.0\"},\"ill-formed UTF-8\x01", "a.gltf"),
+              HasSubstr("found text that cannot be read, expected JSON"));
   EXPECT_THAT(message_of_bytes("glTF", "a.glb"), HasSubstr("a binary glTF of 4 bytes"));
 }
 
