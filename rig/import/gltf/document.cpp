@@ -59,7 +59,7 @@ std::optional<std::array<int, 2>> version_of(std::string_view text) {
 
 GltfDocument::GltfDocument(const std::filesystem::path& path)
     : path_(path), file_(path.string()), bytes_(read_file(path)), format_("glTF 2.0") {
-  root_ = parse_gltf(open_container(), file_);
+  tree_ = parse_gltf(open_container(), file_);
   check_version();
   check_extensions();
   if (root().extension("VRMC_vrm")) {

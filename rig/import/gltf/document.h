@@ -4,7 +4,6 @@
 #include "rig/import/gltf/value.h"
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,9 +22,10 @@ public:
   const std::string& file() const { return file_; }
   const std::string& format() const { return format_; } ///< "glTF 2.0", "glTF 2.0 binary", "VRM 0.x", "VRM 1.0"
   bool faces_back() const { return faces_back_; }       ///< VRM 0.x faces -Z
+  bool has_foreign_bytes() const { return tree_.has_foreign_bytes; } ///< names that are not UTF-8
   std::optional<std::string_view> binary_chunk() const { return binary_; }
 
-  GltfValue root() const { return {file_, root_, ""}; }
+  GltfValue root() const { return {file_, tree_.root, ""}; }
   std::size_t count(std::string_view list) const; ///< of one of the lists on top: "nodes"
   /// The element of such a list that `reference` names by its index. Throws InputError when there is none.
   GltfValue target(const GltfValue& reference, std::string_view list) const;
@@ -40,7 +40,7 @@ private:
   std::string file_, bytes_, format_;
   std::optional<std::string_view> binary_;
   bool faces_back_ = false;
-  nlohmann::json root_;
+  GltfTree tree_;
 };
 
 } // namespace tutu::rig::import_detail

@@ -32,6 +32,7 @@ FileScene read_gltf(const std::filesystem::path& file) {
   scene.up_axis = 'Y';
   if (document.faces_back()) scene.notes.emplace_back("a character of VRM 0.x, which faces -Z");
 
+  if (document.has_foreign_bytes()) scene.notes.emplace_back("names that are not UTF-8: _ stands for what is not");
   GltfMemory memory(document.file());
   GltfAccessors accessors(document, memory);
   GltfRotations rotations(scene.file);

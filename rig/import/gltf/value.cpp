@@ -40,6 +40,7 @@ public:
   TreeBuilder(std::string_view text, const std::string& file) : text_(text), file_(file), limit_(memory_limit()) {}
 
   json take() { return std::move(root_); }
+  bool met_foreign_bytes() const { return met_foreign_bytes_; }
 
   bool null() override { return add(nullptr); }
   bool boolean(bool value) override { return add(value); }
@@ -64,6 +65,8 @@ public:
     return true;
   }
   bool parse_error(std::size_t offset, const std::string&, const json::exception& error) override {
+    met_foreign_bytes_ = std::string_view(error.what()).find("ill-formed UTF-8") != std::string_view::npos;
+    if (met_foreign_bytes_) return false;
     throw InputError(file_, place_of(text_, offset), reason_of(error.what()), "JSON");
   }
 
@@ -101,17 +104,44 @@ private:
   json root_;
   std::vector<json*> open_; ///< containers that are not closed; none of them moves while an inner one is open
   json* member_ = nullptr;
+  bool met_foreign_bytes_ = false;
 };
+
+/// Of the text, UTF-8 alone; its lines stay.
+std::string without_foreign_bytes(std::string_view text) {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  std::string clean;
+  clean.reserve(text.size());
+  while (!text.empty()) {
+    const auto size = static_cast<std::size_t>(std::find_if(text.begin(), text.end(), is_control) - text.begin());
+    clean += plain_text(text.substr(0, size));
+    text.remove_prefix(size);
+    if (text.empty()) break;
+    clean.push_back(text.front());
+    text.remove_prefix(1);
+  }
+  return clean;
+}
 
 } // namespace
 
-json parse_gltf(std::string_view text, const std::string& file) {
+GltfTree parse_gltf(std::string_view text, const std::string& file) {
   if (text.find_first_not_of(" \t\r\n") == text.npos) throw InputError(file, "", "no JSON", "glTF 2.0");
+  GltfTree tree;
   TreeBuilder builder(text, file);
   json::sax_parse(text, &builder);
-  json root = builder.take();
-  if (!root.is_object()) throw InputError(file, "", "JSON that is no object", "glTF 2.0");
-  return root;
+  tree.has_foreign_bytes = builder.met_foreign_bytes();
+  if (tree.has_foreign_bytes) {
+    const std::string clean = without_foreign_bytes(text);
+    TreeBuilder again(clean, file);
+    // An error that quotes the words by which such bytes are known would be taken for one.
+    if (!json::sax_parse(clean, &again)) throw InputError(file, "", "text that cannot be read", "JSON");
+    tree.root = again.take();
+  } else {
+    tree.root = builder.take();
+  }
+  if (!tree.root.is_object()) throw InputError(file, "", "JSON that is no object", "glTF 2.0");
+  return tree;
 }
 
 std::optional<GltfValue> GltfValue::find(std::string_view key) const {

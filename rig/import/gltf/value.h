@@ -11,9 +11,13 @@
 
 namespace tutu::rig::import_detail {
 
+struct GltfTree {
+  nlohmann::json root;            ///< an object
+  bool has_foreign_bytes = false; ///< text that is not UTF-8, as older exporters write names: '_' in place of each byte
+};
 /// Throws InputError on a syntax error (with line and column), on a key twice in one object, on nesting deeper than
 /// 128, on anything but an object, and where its values would take more memory than memory_limit.h allows.
-nlohmann::json parse_gltf(std::string_view text, const std::string& file);
+GltfTree parse_gltf(std::string_view text, const std::string& file);
 
 /// One value and where it stands. What it views must outlive it. All functions throw InputError on a value of another
 /// type than asked.

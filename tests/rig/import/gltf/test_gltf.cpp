@@ -320,6 +320,18 @@ TEST(Gltf, ByteOrderMarkAndZerosBehindTheJson) {
   EXPECT_EQ(read_gltf(GltfMaker::write(folder / "b.glb", glb)).instances.size(), 1u);
 }
 
+TEST(Gltf, NamesThatAreNotUtf8AreReadAllTheSame) {
+  GltfBody body({});
+  std::string text = body.maker.gltf();
+  text.replace(text.find("\"Armature\""), 10, "\"Arm\xe4ture\"");
+  const FileScene scene = read_gltf(GltfMaker::write(scratch_folder() / "a.gltf", text));
+  EXPECT_EQ(scene.nodes[1].name, "Arm_ture");
+  EXPECT_EQ(scene.instances.size(), 1u);
+  EXPECT_THAT(scene.notes, ElementsAre("names that are not UTF-8: _ stands for what is not"));
+  text.insert(text.find("\"nodes\""), "x"); // and what is no JSON either
+  EXPECT_THROW(read_gltf(GltfMaker::write(scratch_folder() / "b.gltf", text)), InputError);
+}
+
 TEST(Gltf, CompressedNormalsAndKhrNameOfMeshopt) {
   GltfBody body({.normals = {.component = k_int16, .normalized = true, .filter = "OCTAHEDRAL"}});
   body.maker.meshopt = true;
