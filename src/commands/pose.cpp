@@ -91,7 +91,7 @@ void add_pose(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("pose", "Pose a character with mouse and keyboard, and save key poses");
   auto options = std::make_shared<Options>();
   command->add_option("CHARACTER", options->character, "Rigged character: .dae .gltf .glb .vrm .fbx .x")->required();
-  add_import_options(*command, options->import);
+  add_import_options(*command, options->import, "--body-height");
   command->add_option("--motion", options->motion,
                       "Clip (.json) to begin with; else what --out holds, else the rest pose");
   command->add_option("-o,--out", options->out,

@@ -4,12 +4,12 @@
 
 namespace tutu::app {
 
-void add_import_options(CLI::App& command, rig::ImportOptions& import) {
+void add_import_options(CLI::App& command, rig::ImportOptions& import, const std::string& height_option) {
   command.add_option("--influences", import.max_influences, "Joints a vertex may hang on")
       ->check(CLI::IsMember({4, 8}))
       ->capture_default_str();
   CLI::Option* height =
-      command.add_option("--height", import.height, "How high the body is, m, whatever the file says of its unit")
+      command.add_option(height_option, import.height, "How high the body is, m, whatever the file says of its unit")
           ->check(finite_number())
           ->check(CLI::PositiveNumber);
   const auto set_unit = [&import](const std::string& word) { import.metres_per_unit = rig::metres_in(word); };

@@ -10,9 +10,6 @@
 #include <assimp/commonMetaData.h>
 #include <assimp/scene.h>
 #include <cmath>
-#include <locale>
-#include <pugixml.hpp>
-#include <sstream>
 
 namespace tutu::rig::import_detail {
 namespace fs = std::filesystem;
@@ -42,23 +39,6 @@ FileScene surface_by(const char* reader, const fs::path& file) {
   return scene_of(*load(file.string(), bytes, reader, k_expected_surface), file.string());
 }
 
-/// Of each geometry that a skin covers: bound space from its vertices.
-std::map<std::string, Affine> bind_shapes_of(const ColladaDocument& document) {
-  std::map<std::string, Affine> shapes;
-  for (const pugi::xml_node& library : document.root().children("library_controllers"))
-    for (const pugi::xml_node& controller : library.children("controller")) {
-      const pugi::xml_node skin = controller.child("skin");
-      std::istringstream numbers(skin.child("bind_shape_matrix").text().get());
-      numbers.imbue(std::locale::classic());
-      Affine shape = Affine::Identity();
-      for (int entry = 0; entry < 12; ++entry) numbers >> shape(entry / 4, entry % 4);
-      const std::string_view source = skin.attribute("source").value();
-      if (numbers && shape.matrix().allFinite() && source.starts_with('#'))
-        shapes.try_emplace(std::string(source.substr(1)), shape);
-    }
-  return shapes;
-}
-
 std::shared_ptr<const aiScene> load_fbx(const std::string& file, std::string_view bytes) {
   try {
     return load(file, bytes, "Autodesk FBX Importer", k_expected_character);
@@ -66,25 +46,6 @@ std::shared_ptr<const aiScene> load_fbx(const std::string& file, std::string_vie
     check_fbx_names(file, bytes); // names that could not be told apart: the likeliest reason
     throw;
   }
-}
-
-void collect_skin_names(const pugi::xml_node& parent, std::map<std::string, std::string>& names) {
-  std::vector<pugi::xml_node> open = {parent};
-  while (!open.empty()) {
-    const pugi::xml_node node = open.back();
-    open.pop_back();
-    if (const std::string sid = node.attribute("sid").value(); std::string_view(node.name()) == "node" && !sid.empty())
-      names.try_emplace(reference_name(node), sid);
-    for (const pugi::xml_node& child : node.children()) open.push_back(child);
-  }
-}
-
-/// A skin calls its joints by sid, which is a joint's of each skeleton; assimp takes the first of the file.
-std::map<std::string, std::string> skin_names(const ColladaDocument& document) {
-  std::map<std::string, std::string> names;
-  for (const char* library : {"library_visual_scenes", "library_nodes"})
-    for (const pugi::xml_node& nodes : document.root().children(library)) collect_skin_names(nodes, names);
-  return names;
 }
 
 } // namespace
@@ -107,12 +68,15 @@ FileScene read_collada(const fs::path& path) {
   Vec3(root.b1, root.b2, root.b3).cwiseAbs().maxCoeff(&axis);
   scene.up_axis = axis_letter(axis);
 
-  const std::map<std::string, Affine> bind_shapes = bind_shapes_of(document);
+  // Meshes are called by their geometry's id.
+  const std::map<std::string, BoundGeometry> geometries = bound_geometries(document);
   for (FileInstance& instance : scene.instances)
-    if (const auto shape = bind_shapes.find(scene.meshes[instance.mesh].name); shape != bind_shapes.end())
-      instance.bind_shape = shape->second;
-  for (FileMesh& mesh : scene.meshes) // called by the geometry's id
-    if (const pugi::xml_attribute name = document.element(mesh.name).attribute("name")) mesh.name = name.value();
+    if (const auto geometry = geometries.find(scene.meshes[instance.mesh].name); geometry != geometries.end())
+      instance.bind_shape = geometry->second.bind_shape;
+  for (FileMesh& mesh : scene.meshes)
+    if (const auto geometry = geometries.find(mesh.name);
+        geometry != geometries.end() && !geometry->second.name.empty())
+      mesh.name = geometry->second.name;
   scene.animations = animations(document, node_of);
   return scene;
 }
@@ -136,6 +100,10 @@ FileScene read_fbx(const fs::path& path) {
   if (const auto axis = metadata<std::int32_t>(*from, "UpAxis")) scene.up_axis = axis_letter(*axis);
 
   FbxMotion motion = fbx_motion(bytes, scene.nodes);
+  std::vector<bool> holds_mesh(scene.nodes.size(), false); // assimp has put geometric transforms into these
+  for (const FileInstance& instance : scene.instances) holds_mesh[instance.node] = true;
+  for (const auto& [node, local] : motion.locals)
+    if (!holds_mesh[node]) scene.nodes[node].local = local;
   scene.animations = std::move(motion.animations);
   if (!motion.unread.empty()) {
     scene.animations = animations_of(*from, scene, k_fbx_ticks);

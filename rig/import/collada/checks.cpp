@@ -63,20 +63,6 @@ constexpr std::pair<const char*, const char*> k_references[] = {{"instance_visua
                                                                 {"skin", "source"},
                                                                 {"morph", "source"}};
 
-/// Calls `look` with every element of the document.
-void each_element(const ColladaDocument& document, const std::function<void(const pugi::xml_node&)>& look) {
-  const pugi::xml_node top = document.root();
-  for (pugi::xml_node node = top; node;) {
-    look(node);
-    pugi::xml_node next = node.first_child();
-    while (!next && node && node != top) {
-      next = node.next_sibling();
-      node = node.parent();
-    }
-    node = next;
-  }
-}
-
 } // namespace
 
 void check_references(const ColladaDocument& document) {
@@ -97,27 +83,6 @@ void check_skins(const ColladaDocument& document) {
   each_element(document, [&](const pugi::xml_node& node) {
     if (std::string_view(node.name()) == "skin") check_skin(document, node);
   });
-}
-
-void check_collada(const std::string& file) {
-  const ColladaDocument document(file);
-  check_references(document);
-  check_skins(document);
-}
-
-std::string reference_name(const pugi::xml_node& node) {
-  const std::string id = node.attribute("id").value();
-  return id.empty() ? node.attribute("sid").value() : id;
-}
-
-std::map<std::string, std::string> display_names(const ColladaDocument& document) {
-  std::map<std::string, std::string> names;
-  each_element(document, [&](const pugi::xml_node& node) {
-    if (std::string_view(node.name()) != "node") return;
-    const std::string reference = reference_name(node), name = node.attribute("name").value();
-    if (!reference.empty()) names.emplace(reference, name.empty() ? reference : name);
-  });
-  return names;
 }
 
 } // namespace tutu::rig::import_detail

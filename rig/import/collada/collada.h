@@ -55,6 +55,17 @@ std::string reference_name(const pugi::xml_node& node);
 /// For people: the name of each node by its reference name; of several of one reference name the first one's.
 std::map<std::string, std::string> display_names(const ColladaDocument& document);
 
+/// What a skin calls a node: its sid, by its reference name; of nodes that have one. Several may have the same, one in
+/// each skeleton.
+std::map<std::string, std::string> skin_names(const ColladaDocument& document);
+
+/// By the id of a geometry: its name for people, which may be empty, and bound space from its vertices.
+struct BoundGeometry {
+  std::string name;
+  Affine bind_shape = Affine::Identity();
+};
+std::map<std::string, BoundGeometry> bound_geometries(const ColladaDocument& document);
+
 /// The clips of the file: its <animation_clip>s, or without any all animations together. `node_of` gives the node of a
 /// reference name. Channels on anything else than the transform of such a node are left out and noted.
 /// Throws InputError on keys that are not as many as they should be, fall in time, or are no numbers.

@@ -4,6 +4,7 @@
 #include "rig/import/collada/collada.h"
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
@@ -11,6 +12,9 @@
 #include <vector>
 
 namespace tutu::rig::import_detail {
+
+/// Looks at every element below the root, parents first.
+void each_element(const ColladaDocument& document, const std::function<void(const pugi::xml_node&)>& look);
 
 /// What a message shows of the file's own text: plain and not long.
 std::string shown(std::string_view text);
