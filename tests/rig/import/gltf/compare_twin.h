@@ -75,7 +75,6 @@ inline double farthest_point(const std::vector<Vec3>& a, const std::vector<Vec3>
 
 /// What a reader makes of a file: corners at a time of an animation.
 using Reading = std::function<std::vector<Vec3>(int animation, double time)>;
-
 using Distance = std::function<double(const std::vector<Vec3>&, const std::vector<Vec3>&)>;
 
 /// The greatest difference between reading and twin, at rest and at ten times of each animation; of the height.

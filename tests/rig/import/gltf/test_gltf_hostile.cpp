@@ -1,7 +1,5 @@
 // Files of glTF that are damaged, cut, circular, or claim more than they hold: read, or one message, and nothing else.
-#include "rig/error.h"
-#include "rig/import/gltf/gltf.h"
-#include "tests/rig/import/gltf/gltf_body.h"
+#include "tests/rig/import/gltf/gltf_message.h"
 #include "tests/rig/import/other_process.h"
 #include "tests/support/paths.h"
 
@@ -16,35 +14,9 @@ using namespace tutu::test;
 using nlohmann::json;
 using rig::import_detail::read_gltf;
 using ::testing::HasSubstr;
-using ::testing::StartsWith;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// The message, or "" when the file was read. Anything thrown but InputError fails the test.
-std::string message_of(const fs::path& file) {
-  try {
-    read_gltf(file);
-    return "";
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    EXPECT_THAT(message, StartsWith(file.string()));
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    EXPECT_LT(message.size(), file.string().size() + 500) << message;
-    return message;
-  }
-}
-std::string message_of_bytes(std::string_view bytes, const char* name = "bad.glb") {
-  static const fs::path folder = fs::temp_directory_path() / ("tutu-gltf-hostile." + std::to_string(::getpid()));
-  return message_of(GltfMaker::write(folder / name, std::string(bytes)));
-}
-std::string message_of(const GltfMaker& maker) { return message_of_bytes(maker.glb()); }
-
-GltfBody compressed_body(bool meshopt, std::optional<int> draco) {
-  GltfBody body({.draco = draco});
-  body.maker.meshopt = meshopt;
-  return body;
-}
 
 /// The message of the plain body, one thing of it changed.
 template <typename Change> std::string changed(const Change& change, const BodyOptions& options = {}) {
@@ -355,110 +327,6 @@ TEST(GltfHostile, CutAnywhere) {
   const std::string text = GltfBody({}).maker.gltf();
   for (std::size_t size = 0; size + 1 < text.size(); size += 7)
     EXPECT_NE(message_of_bytes(std::string_view(text).substr(0, size), "a.gltf"), "") << size;
-}
-
-/// The JSON of a .glb, and the file with another.
-json json_of(const std::string& glb) {
-  std::uint32_t length = 0;
-  std::memcpy(&length, glb.data() + 12, 4);
-  return json::parse(glb.substr(20, length));
-}
-std::string with_json(const std::string& glb, const json& root) {
-  std::uint32_t length = 0;
-  std::memcpy(&length, glb.data() + 12, 4);
-  const std::string body = glb.substr(20 + length);
-  std::string text = root.dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  std::string file = "glTF";
-  GltfMaker::append(file, std::uint32_t{2});
-  GltfMaker::append(file, static_cast<std::uint32_t>(20 + text.size() + body.size()));
-  GltfMaker::append(file, static_cast<std::uint32_t>(text.size()));
-  return file + "JSON" + text + body;
-}
-
-TEST(GltfHostile, AStreamOfMeshoptCutAtEveryByte) {
-  const std::string glb = compressed_body(true, {}).maker.glb();
-  const json root = json_of(glb);
-  int streams = 0;
-  for (std::size_t v = 0; v < root["bufferViews"].size(); ++v) {
-    if (!root["bufferViews"][v].contains("extensions")) continue;
-    ++streams;
-    const std::size_t length = root["bufferViews"][v]["extensions"]["EXT_meshopt_compression"]["byteLength"];
-    for (std::size_t size = 0; size < length; ++size) {
-      json cut = root;
-      cut["bufferViews"][v]["extensions"]["EXT_meshopt_compression"]["byteLength"] = size;
-      EXPECT_THAT(message_of_bytes(with_json(glb, cut)), HasSubstr("EXT_meshopt_compression: a stream"))
-          << v << ", " << size;
-    }
-  }
-  EXPECT_GT(streams, 10);
-}
-
-TEST(GltfHostile, LayoutsThatMeshoptDoesNotAllow) {
-  const std::string glb = compressed_body(true, {}).maker.glb();
-  const auto with = [&](const char* member, const json& value) {
-    json root = json_of(glb);
-    root["bufferViews"][0]["extensions"]["EXT_meshopt_compression"][member] = value;
-    return message_of_bytes(with_json(glb, root));
-  };
-  EXPECT_EQ(with("byteStride", 12), "");
-  for (const int stride : {0, 1, 13, 260})
-    EXPECT_THAT(with("byteStride", stride), HasSubstr("do not go together")) << stride;
-  EXPECT_THAT(with("filter", "OCTAHEDRAL"), HasSubstr("do not go together"));
-  EXPECT_THAT(with("filter", "QUATERNION"), HasSubstr("do not go together"));
-  EXPECT_THAT(with("filter", "COLOR"), HasSubstr("one that EXT_meshopt_compression has"));
-  EXPECT_THAT(with("mode", "TRIANGLES"), HasSubstr("do not go together"));
-  EXPECT_THAT(with("mode", "POINTS"), HasSubstr("one that EXT_meshopt_compression has"));
-  EXPECT_THAT(with("count", 1'000'000'000), HasSubstr("for 1000000000 elements, which cannot be decoded"));
-  EXPECT_THAT(with("count", 9e15), HasSubstr("which cannot be decoded"));
-  std::string newer = glb;
-  const json root = json_of(glb);
-  const std::size_t start = root["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["byteOffset"];
-  std::uint32_t length = 0;
-  std::memcpy(&length, glb.data() + 12, 4);
-  newer[28 + length + start] = '\xa1';
-  EXPECT_THAT(message_of_bytes(newer), HasSubstr("a stream of version 1, which is not read"));
-}
-
-TEST(GltfHostile, AStreamOfDracoCutAtEveryByte) {
-  for (const int method : {0, 1}) {
-    const std::string glb = compressed_body(false, method).maker.glb();
-    const json root = json_of(glb);
-    const std::size_t v = root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"]["bufferView"];
-    const std::size_t length = root["bufferViews"][v]["byteLength"];
-    for (std::size_t size = 0; size < length; ++size) {
-      json cut = root;
-      cut["bufferViews"][v]["byteLength"] = size;
-      EXPECT_THAT(message_of_bytes(with_json(glb, cut)), HasSubstr("KHR_draco_mesh_compression: "))
-          << method << ", " << size;
-    }
-  }
-}
-
-TEST(GltfHostile, AStreamOfDracoThatClaimsTooMuch) {
-  for (const int method : {0, 1}) {
-    std::string glb = compressed_body(false, method).maker.glb();
-    const std::size_t start = glb.find("DRACO");
-    ASSERT_NE(start, std::string::npos);
-    const std::size_t numbers = start + (method == 0 ? 11 : 12);
-    for (std::size_t k = 0; k < 4; ++k) glb[numbers + k] = '\xff';
-    glb[numbers + 4] = '\x0f'; // 2^32 - 1
-    EXPECT_THAT(message_of_bytes(glb), HasSubstr("4,294,967,295")) << method;
-  }
-}
-
-TEST(GltfHostile, AttributesThatDracoHasNot) {
-  const auto with = [](const char* place, const json& value) {
-    GltfBody body = compressed_body(false, 0);
-    body.maker
-        .root["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"][json::json_pointer(place)] =
-        value;
-    return message_of(body.maker);
-  };
-  EXPECT_THAT(with("/attributes/POSITION", 77), HasSubstr("KHR_draco_mesh_compression: no attribute 77"));
-  EXPECT_THAT(with("/attributes/POSITION", 1e12), HasSubstr("no attribute"));
-  EXPECT_THAT(with("/attributes/POSITION", 1), HasSubstr("4 components, expected 3"));
-  EXPECT_THAT(with("/bufferView", 99), HasSubstr("/bufferView: found 99"));
 }
 
 TEST(GltfHostile, FlippedBits_slow) {
