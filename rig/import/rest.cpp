@@ -61,13 +61,27 @@ private:
     };
     add_line(surface.holder);
     if (!bound.empty()) add_line(nodes_[joints_.nodes[bound.begin()->first]].parent);
+    for (Affine& space : spaces) space = space * surface.bind_shape;
+    if (const auto best = nearest(spaces, bound); best || bound.empty()) return best;
+    const Matrix3 measure = measure_of(surface, bound);
+    for (Affine& space : spaces) {
+      space.linear() = polar(space.linear()).rotation * measure;
+      space.translation() = Vec3::Zero();
+      Vec3 away = Vec3::Zero(); // nothing tells the place: on the whole where the nodes stand
+      for (const auto& [joint, place] : bound) away += stands(joint) - space * place.translation();
+      space.translation() = away / static_cast<double>(bound.size());
+    }
+    return nearest(spaces, bound);
+  }
+
+  Vec3 stands(int joint) const { return nodes_[joints_.nodes[joint]].global.translation(); }
+
+  std::optional<Affine> nearest(const std::vector<Affine>& spaces, const std::map<int, Affine>& bound) const {
     std::optional<Affine> best;
     double least = std::numeric_limits<double>::infinity();
-    for (const Affine& outer : spaces) {
-      const Affine space = outer * surface.bind_shape;
+    for (const Affine& space : spaces) {
       double off = 0.0;
-      for (const auto& [joint, place] : bound)
-        off += (space * place.translation() - nodes_[joints_.nodes[joint]].global.translation()).norm();
+      for (const auto& [joint, place] : bound) off += (space * place.translation() - stands(joint)).norm();
       if (!(off < (1.0 - 1e-6) * least) || !has_same_bones(space, bound)) continue;
       least = off;
       best = space;
@@ -75,12 +89,22 @@ private:
     return best;
   }
 
+  /// Vertices may be in a measure of their own along each axis (quantised, say), which the inverse binds undo: what the
+  /// main joint's has beyond a rotation and the node's scale.
+  Matrix3 measure_of(const Surface& surface, const std::map<int, Affine>& bound) const {
+    const Node& node = nodes_[surface.bindings[surface.dominant].node];
+    const auto main = bound.find(node.joint);
+    if (main == bound.end()) return Matrix3::Identity();
+    const double scale = std::cbrt(std::abs(node.split.stretch.determinant()));
+    const Matrix3 turned_first = main->second.linear().transpose();
+    return scale * polar(turned_first).stretch.inverse();
+  }
+
   bool has_same_bones(const Affine& space, const std::map<int, Affine>& bound) const {
     std::vector<double> ratios;
     for (const auto& [joint, place] : bound) {
       const auto parent = bound.find(joints_.parents[joint]);
       if (parent == bound.end()) continue;
-      const auto stands = [&](int j) { return Vec3(nodes_[joints_.nodes[j]].global.translation()); };
       const double length = (stands(joint) - stands(parent->first)).norm();
       if (length > 0.0)
         ratios.push_back((space * place.translation() - space * parent->second.translation()).norm() / length);

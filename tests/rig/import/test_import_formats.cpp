@@ -94,20 +94,22 @@ TEST(ImportCollada, AFirstKeyThatIsLateWaits) {
   EXPECT_NEAR(turned_by(import, 0, 1.0, "Head"), 0.0, 1e-6);
 }
 
-/// A strip on two frames, of which the head turns from 0 to 90 degrees in 9600 ticks.
+/// A strip on two frames, of which the head turns from 0 to 90 degrees in 9600 ticks. (assimp reads "1,0" as 1.0.)
 std::string tiny_x(const std::string& ticks) {
-  const auto matrix = [](double y) {
-    return "FrameTransformMatrix { 1,0,0,0,0,1,0,0,0,0,1,0,0," + digits(y) + ",0,1;; }\n";
+  const auto matrix = [](const std::string& y) {
+    return "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0," + y + ",0.0,1.0;; }\n";
   };
-  const auto weights = [](const char* joint, const char* vertices, double y) {
-    return "SkinWeights { \"" + std::string(joint) + "\"; 2; " + vertices + "; 1.0,1.0; 1,0,0,0,0,1,0,0,0,0,1,0,0," +
-           digits(-y) + ",0,1;; }\n";
+  const auto frame = [&](const std::string& name, const std::string& y) {
+    return "Frame " + name + " {\nFrameTransformMatrix { " + matrix(y);
   };
-  return "xof 0303txt 0032\n" + ticks + "Frame Root {\n" + matrix(0) + "Frame Hips {\n" + matrix(1) + "Frame Head {\n" +
-         matrix(0.5) + "} } Frame Body {\n" + matrix(0) +
-         "Mesh {\n4;\n-0.2;0;0;,\n0.2;0;0;,\n-0.2;1.7;0;,\n0.2;1.7;0;;\n2;\n3;0,2,1;,\n3;2,3,1;;\n"
+  const auto weights = [&](const std::string& joint, const std::string& vertices, const std::string& down) {
+    return "SkinWeights { \"" + joint + "\"; 2; " + vertices + "; 1.0,1.0; " + matrix(down);
+  };
+  return "xof 0303txt 0032\n" + ticks + frame("Root", "0.0") + frame("Hips", "1.0") + frame("Head", "0.5") + "} }\n" +
+         frame("Body", "0.0") +
+         "Mesh {\n4;\n-0.2;0.0;0.0;,\n0.2;0.0;0.0;,\n-0.2;1.7;0.0;,\n0.2;1.7;0.0;;\n2;\n3;0,2,1;,\n3;2,3,1;;\n"
          "XSkinMeshHeader { 1; 1; 2; }\n" +
-         weights("Hips", "0,1", 1) + weights("Head", "2,3", 1.5) +
+         weights("Hips", "0,1", "-1.0") + weights("Head", "2,3", "-1.5") +
          "}\n} }\nAnimationSet Nod {\nAnimation {\n{Head}\nAnimationKey { 0; 2; "
          "0;4;1.0,0.0,0.0,0.0;;,9600;4;0.70710678,0.0,0.0,0.70710678;;; }\n}\n}\n";
 }

@@ -138,6 +138,24 @@ TEST(GltfImport, TwoJointsOfOneNameAreTwo) {
   EXPECT_LT(local[5].rotation.angularDistance(import.character.skeleton.rest_local[5].rotation), 1e-9) << "not this";
 }
 
+TEST(GltfImport, RestsInItsBindPoseQuantisedOrNot) {
+  const Stored stored{.component = k_int16, .normalized = true, .gap = 2};
+  std::vector<Vec3> bones[2];
+  for (const bool quantised : {false, true}) {
+    GltfBody body(quantised ? BodyOptions{.positions = stored, .quantized = true} : BodyOptions{});
+    nlohmann::json& nodes = body.maker.root["nodes"]; // in a leap, one arm down
+    nodes[static_cast<std::size_t>(body.joint(0))]["translation"] = {0.3, 1.6, 0.2};
+    nodes[static_cast<std::size_t>(body.joint(3))]["rotation"] = {0, 0, std::sin(0.6), std::cos(0.6)};
+    const Import import = import_character(GltfMaker::write(scratch_folder() / "body.glb", body.maker.glb()));
+    EXPECT_THAT(import.report.notes, Contains(HasSubstr("rests in its bind pose")));
+    EXPECT_NEAR(import.report.height, GltfBody::k_height, 1e-3);
+    const auto rest = rest_model(import.character.skeleton);
+    for (const Transform& joint : rest) bones[quantised].push_back(joint.translation - rest[0].translation);
+    EXPECT_NEAR(rest[4].translation.y(), rest[3].translation.y(), 1e-4) << "the arm is level";
+  }
+  for (std::size_t j = 0; j < bones[0].size(); ++j) EXPECT_LT((bones[0][j] - bones[1][j]).norm(), 1e-4) << j;
+}
+
 TEST(GltfImport, WithoutInverseBindsRestsAsItsNodesStand) {
   const GltfBody body({.has_inverse_binds = false});
   const Import import = import_character(GltfMaker::write(scratch_folder() / "body.glb", body.maker.glb()));
