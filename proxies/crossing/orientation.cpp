@@ -46,6 +46,11 @@ int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d
 
 } // namespace
 
+std::optional<Vec3> exact_place(const Vec3& point) {
+  if (!(point.cwiseAbs().maxCoeff() <= k_largest_exact) || !point.allFinite()) return std::nullopt;
+  return point.unaryExpr([](double x) { return std::abs(x) < k_least_exact ? 0.0 : x; });
+}
+
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const Vec3 u = b - a, v = c - a, w = d - a;
   const double vxwy = v.x() * w.y(), wxvy = w.x() * v.y();

@@ -3,11 +3,16 @@
 
 #include "rig/math.h"
 
+#include <optional>
+
 namespace tutu::proxies {
 
 /// Coordinates that the predicates of this folder are exact for: 0, or of a size within these bounds (any unit).
 /// Products of three differences then neither overflow nor lose bits below the least double.
 inline constexpr double k_least_exact = 1e-80, k_largest_exact = 1e80;
+
+/// The point as the predicates take it: coordinates below the least are 0. None where one is no number or too large.
+std::optional<Vec3> exact_place(const Vec3& point);
 
 /// The sign of (b - a) . ((c - a) x (d - a)), exactly: +1 where d is on the side to which the normal of the triangle
 /// a b c points (counterclockwise seen from there), -1 on the other, 0 in its plane.

@@ -49,11 +49,6 @@ struct Parts {
   std::vector<int> owners; ///< the triangles of each edge
 };
 
-std::optional<Vec3> exact_place(const Vec3& p) {
-  if (!(p.cwiseAbs().maxCoeff() <= k_largest_exact) || !p.allFinite()) return std::nullopt;
-  return p.unaryExpr([](double x) { return std::abs(x) < k_least_exact ? 0.0 : x; });
-}
-
 void find_edges(Parts& parts) {
   std::vector<std::array<std::uint32_t, 3>> sides; // lower end, upper end, triangle
   for (std::size_t t = 0; t < parts.triangles.size(); ++t)

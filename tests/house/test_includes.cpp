@@ -32,6 +32,8 @@ const std::vector<std::vector<std::string>> k_rows = {
     {"proxies"},
     {"proxies/distance"},
     {"proxies/motion"},
+    {"proxies/crossing/detail"},
+    {"proxies/crossing"},
     {"proxies/body/detail"},
     {"proxies/body"},
     {"proxies/query/detail"},

@@ -1,8 +1,9 @@
-// Counts what passes through cloth, by geometry alone: double precision, no solver, no collision query.
+// Counts what passes through cloth of any topology, by geometry alone: no solver, no collision query.
 #pragma once
 
 #include "cloth/garment/garment.h"
 #include "proxies/shapes.h"
+#include "src/study/bench/threads.h"
 
 #include <span>
 #include <vector>
@@ -18,19 +19,18 @@ struct MovingPoint {
 /// sum.
 int net_passages(const MovingPoint& p, const MovingPoint& q, const MovingPoint& a, const MovingPoint& b);
 
-/// Whether the segment a b goes through the triangle.
-bool pierces(const Vec3& a, const Vec3& b, const Vec3& t0, const Vec3& t1, const Vec3& t2);
-
-/// Watches the axes of capsules and the surface of one gridded garment from frame to frame.
+/// Watches the axes of capsules and the surface of one garment, woven or not, from frame to frame.
 ///
-/// A crossing is counted on each thread (row or column of particles): the net number of times the axis has passed
-/// through it within the frame, cloth and axis moving on straight lines from end to end. Net, because material that
-/// slides around a limb faster than frames show it passes there and back on such lines; what stays is a thread that is
-/// on another side of the limb than its ends allow. A limb that goes through cloth crosses all threads that lie across
-/// it, even when it is clear of the cloth before and after.
+/// A crossing is counted on each thread (threads.h): the net number of times the axis has passed through it within the
+/// frame, cloth and axis moving on straight lines from end to end. Net, because material that slides around a limb
+/// faster than frames show it passes there and back on such lines; what stays is a thread that is on another side of
+/// the limb than its ends allow. A limb that goes through cloth crosses all threads that lie across it, even when it is
+/// clear of the cloth before and after. The moments are roots of cubics in double, not exact: an axis is watched 1 nm
+/// beside its place, so that one which meets a particle head-on is counted once.
 ///
-/// Besides, triangles that an axis goes through at the frame's end are counted: a limb that is stuck in the cloth.
-/// Spheres have no axis and are not watched.
+/// Besides, triangles that an axis goes through at the frame's end are counted, exactly: a limb that is stuck in the
+/// cloth. One that goes through an edge is in one of the edge's triangles (proxies/crossing/segment_triangle.h).
+/// Spheres have no axis and are not watched; of positions that are no numbers nothing is counted.
 class CrossingCounter {
 public:
   explicit CrossingCounter(const cloth::Garment& garment);
@@ -45,14 +45,23 @@ public:
   int pierced_now() const { return pierced_now_; }
 
 private:
-  int crossings_of(const std::vector<int>& thread, std::span<const Vec3> positions,
+  int crossings_of(const Thread& thread, std::span<const Vec3> positions,
                    std::span<const proxies::Capsule> capsules) const;
 
   const cloth::Garment* garment_;
-  std::vector<std::vector<int>> threads_; ///< particles in a row; a closed one repeats its first
+  std::vector<Thread> threads_;
   std::vector<Vec3> positions_;
   std::vector<proxies::Capsule> capsules_;
   int crossings_ = 0, pierced_ = 0, pierced_now_ = 0;
 };
+
+/// Connected curves of intersection now (proxies/crossing/surface_crossings.h): what the axes do not show.
+struct SurfacesThrough {
+  int colliders = 0; ///< cloth with the surfaces of capsules and spheres
+  int cloth = 0;     ///< cloth with itself
+};
+
+SurfacesThrough surfaces_through(const cloth::Garment& garment, std::span<const Vec3> positions,
+                                 std::span<const proxies::Capsule> capsules);
 
 } // namespace tutu::app

@@ -39,6 +39,8 @@ struct Worst {
     if (!why.empty()) broken.push_back(fmt::format("start {}: {}", start, fmt::join(why, "; ")));
     run.crossings += other.crossings;
     run.pierced += other.pierced;
+    run.at_end.colliders += other.at_end.colliders;
+    run.at_end.cloth += other.at_end.cloth;
     run.recoveries += other.recoveries;
     for (double StabilityRun::*figure :
          {&StabilityRun::stretch, &StabilityRun::worst_stretch, &StabilityRun::depth, &StabilityRun::speed})
@@ -63,6 +65,7 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
        {"passed", worst.passed},
        {"crossings", run.crossings},
        {"pierced", run.pierced},
+       {"through_at_end", {{"colliders", run.at_end.colliders}, {"cloth", run.at_end.cloth}}},
        {"stretch_pct", {{"p99", 100.0 * run.stretch}, {"max", 100.0 * run.worst_stretch}}},
        {"pen_mm", {{"max", 1e3 * run.depth}}},
        {"speed", run.speed},

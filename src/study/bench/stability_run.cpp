@@ -3,7 +3,6 @@
 #include "cloth/adaptive_substeps.h"
 #include "cloth/metrics.h"
 #include "cloth/recovery.h"
-#include "src/study/bench/crossings.h"
 
 #include <algorithm>
 #include <chrono>
@@ -44,6 +43,7 @@ void judge_end(const StabilityScene& scene, const std::vector<Capsule>& capsules
   for (const double depth : depths) run.depth = std::max(run.depth, depth);
   for (const Vec3& v : run.end.velocities) run.speed = std::max(run.speed, v.norm());
   run.turn_rate = turn_rate_of(run.end);
+  run.at_end = surfaces_through(scene.garment, run.end.positions, capsules);
 }
 
 } // namespace

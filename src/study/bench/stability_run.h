@@ -3,6 +3,7 @@
 
 #include "cloth/solver.h"
 #include "src/run/settings.h"
+#include "src/study/bench/crossings.h"
 #include "src/study/bench/stability_scenes.h"
 
 #include <string>
@@ -16,6 +17,7 @@ struct StabilityRun {
   int crossings = 0;          ///< CrossingCounter
   int pierced = 0;            ///< triangles, summed over frames
   int pierced_at_end = 0;     ///< triangles
+  SurfacesThrough at_end;     ///< what surfaces go through each other after the last frame
   double stretch = 0.0;       ///< p99 of the lengthening of grid edges, at the end
   double worst_stretch = 0.0; ///< of any edge in any frame
   double depth = 0.0;         ///< m, of the deepest particle, at the end

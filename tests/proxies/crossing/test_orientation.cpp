@@ -14,14 +14,16 @@ using namespace tutu::proxies;
 
 namespace {
 
+__extension__ typedef __int128 Int128; // not of the standard, but of every compiler this is built by
+
 using Point = std::array<std::int64_t, 3>; ///< |x| <= 2^52
 
 /// Whole numbers of up to 190 bits, as c[k] 2^(27 k).
 struct Wide {
-  std::array<__int128, 4> c = {};
+  std::array<Int128, 4> c = {};
 
   void add_product(std::int64_t a, std::int64_t b, std::int64_t d, int sign) {
-    const auto split = [](std::int64_t x) { return std::array<__int128, 2>{x & ((1 << 27) - 1), x >> 27}; };
+    const auto split = [](std::int64_t x) { return std::array<Int128, 2>{x & ((1 << 27) - 1), x >> 27}; };
     const auto u = split(a), v = split(b), w = split(d);
     for (int i = 0; i < 2; ++i)
       for (int j = 0; j < 2; ++j)
@@ -98,8 +100,8 @@ TEST(Orientation, CrossSignAgreesWithLongIntegers) {
     for (int k = 0; k < 3; ++k)
       d[k] = c[k] + (b[k] - a[k]) / (1 + static_cast<std::int64_t>(trial % 3)) + static_cast<int>(random() % 3) - 1;
     const int axis = trial % 3, y = (axis + 1) % 3, z = (axis + 2) % 3;
-    const __int128 area =
-        static_cast<__int128>(b[y] - a[y]) * (d[z] - c[z]) - static_cast<__int128>(b[z] - a[z]) * (d[y] - c[y]);
+    const Int128 area =
+        static_cast<Int128>(b[y] - a[y]) * (d[z] - c[z]) - static_cast<Int128>(b[z] - a[z]) * (d[y] - c[y]);
     const int expected = (area > 0) - (area < 0);
     const std::array<int, 3> none = {};
     ASSERT_EQ(cross_sign(scaled(a, none), scaled(b, none), scaled(c, none), scaled(d, none), axis), expected);

@@ -1,6 +1,7 @@
 // What must never happen to cloth, and what it must come back from. Ten jittered starts of each scene, default
 // settings.
 #include "src/study/bench/stability_run.h"
+#include "tests/support/mesh_sheet.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -23,6 +24,29 @@ void expect_all_pass(const std::function<StabilityScene(std::uint64_t)>& build) 
                                 << fmt::format("{}", fmt::join(broken, "; "));
   }
   EXPECT_EQ(passed, k_stability_runs) << name;
+}
+
+/// The scene with its sheet of other triangles, held along the same border.
+StabilityScene of_mesh(StabilityScene scene, const cloth::MeshShape& mesh) {
+  cloth::GarmentDescription description;
+  description.name = "mesh";
+  description.shape = mesh;
+  description.fabric = scene.garment.fabric;
+  double top = -1e9;
+  for (const Vec3& p : mesh.positions) top = std::max(top, p.y());
+  cloth::Attachment upper;
+  upper.joint = "stage";
+  upper.above = top - 1e-6;
+  description.attachments = {upper};
+  scene.garment = cloth::build_garment(description);
+  scene.start = scene.garment.rest_positions;
+  std::vector<Vec3> held;
+  for (const cloth::Pin& pin : scene.garment.pins) held.push_back(scene.garment.rest_positions[pin.particle]);
+  scene.pose = [grid = scene.pose, held](double t, std::vector<proxies::Capsule>& capsules, std::vector<Vec3>& pins) {
+    grid(t, capsules, pins);
+    pins = held;
+  };
+  return scene;
 }
 
 class FastLeg : public ::testing::TestWithParam<double> {};
@@ -118,6 +142,24 @@ TEST(Stability, SweptContactsStopAFastLegAtAFixedCost_slow) {
     }
     EXPECT_GT(without, 0) << speed << " m/s is too slow to show anything";
   }
+}
+
+TEST(Stability, TheJudgeSeesALegThatPassesThroughAMesh) {
+  StabilityScene scene =
+      of_mesh(fast_leg(2.0, 1), test::mesh_sheet(16, {-0.3, 1.6, 0}, {0.6, 0, 0}, {0, -0.6, 0}, 0.2));
+  scene.pose = [thick = scene.pose](double t, std::vector<proxies::Capsule>& capsules, std::vector<Vec3>& pins) {
+    thick(t, capsules, pins);
+    capsules[0].radius = 1e-6;
+  };
+  scene.seconds = 0.4;
+  RunSettings setup;
+  setup.swept = false;
+  setup.adaptive_substeps = false;
+  setup.features = cloth::ContactFeatures::particles;
+  const StabilityRun run = run_stability(scene, setup);
+  EXPECT_TRUE(run.failure.empty()) << run.failure;
+  EXPECT_GE(run.crossings, 14);
+  EXPECT_FALSE(broken_limits(scene, run).empty());
 }
 
 TEST(Stability, TheJudgeSeesALegThatPasses) {
