@@ -55,7 +55,9 @@ private:
   int crossings_ = 0, pierced_ = 0, pierced_now_ = 0;
 };
 
-/// Connected curves of intersection now (proxies/crossing/surface_crossings.h): what the axes do not show.
+/// Connected curves of intersection now (proxies/crossing/surface_crossings.h): what the axes do not show. Limbs are
+/// polyhedra, up to 0.4 % of their radius thinner than they are. Layers of cloth that lie exactly on each other are
+/// told apart by the rest shape; the lips of a slit that is shut to the last bit are not, and may count.
 struct SurfacesThrough {
   int colliders = 0; ///< cloth with the surfaces of capsules and spheres
   int cloth = 0;     ///< cloth with itself

@@ -43,7 +43,7 @@ Cut cut_of(const cloth::Garment& garment, int axis, double level) {
   for (const auto& t : garment.triangles) {
     std::vector<int> cut_edges;
     for (int k = 0; k < 3; ++k) {
-      const auto [i, j] = std::minmax(static_cast<int>(t[k]), static_cast<int>(t[(k + 1) % 3]));
+      const auto [i, j] = std::minmax({static_cast<int>(t[k]), static_cast<int>(t[(k + 1) % 3])});
       // A corner in the plane counts as below it, so that a triangle is cut in two edges or none.
       if ((height(i) > 0.0) == (height(j) > 0.0)) continue;
       const auto [found, is_new] = point_of.try_emplace({i, j}, static_cast<int>(cut.points.size()));

@@ -212,7 +212,11 @@ TEST(Crossings, SurfacesThatGoThroughEachOtherAreCountedForAnyCloth) {
       if (p.y() < 1.3) p = Vec3(p.x(), 1.3 + 0.8 * (1.3 - p.y()), 0.1 - (1.3 - p.y()));
     EXPECT_EQ(surfaces_through(garment, rolled, {}).cloth, 1);
   }
-  cloth::TubeShape tube{20, 30, {{1.0, 0.2, 0.2}, {0.5, 0.3, 0.3}}, 0.0, 0.5};
+  const cloth::Garment woven = sheet(10);
+  std::vector<Vec3> folded = woven.rest_positions; // in two, its halves flush
+  for (Vec3& p : folded) p.x() = std::abs(p.x());
+  EXPECT_EQ(surfaces_through(woven, folded, {}).cloth, 0);
+  cloth::TubeShape tube{20, 30, {{1.0, 0.2, 0.2}, {0.5, 0.3, 0.3}}, 0.0, 1.0};
   const cloth::Garment sewn = built(tube);
   ASSERT_FALSE(sewn.seams.empty());
   EXPECT_EQ(surfaces_through(sewn, sewn.rest_positions, {}).cloth, 0) << "a seam is no crossing";
@@ -226,7 +230,7 @@ TEST(Threads, OfWovenClothAreItsRowsAndColumns) {
 
 TEST(Threads, OfAnyShapeEndOnlyAtTheBorder) {
   cloth::MeshShape tube; // a ring of triangles, open above and below, and with a hole
-  const cloth::Garment woven = built(cloth::TubeShape{12, 25, {{1.0, 0.2, 0.2}, {0.5, 0.3, 0.25}}});
+  const cloth::Garment woven = built(cloth::TubeShape{12, 25, {{1.0, 0.2, 0.2}, {0.5, 0.3, 0.25}}, 0.0, {}});
   tube.positions = woven.rest_positions;
   for (std::size_t t = 0; t < woven.triangles.size(); ++t)
     if (t < 150 || t > 154) tube.triangles.push_back(woven.triangles[t]);
