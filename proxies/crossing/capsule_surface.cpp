@@ -43,13 +43,13 @@ std::vector<Ring> rings_of(const Capsule& capsule, const Vec3& axis, double leng
 
 } // namespace
 
-CapsuleSurface capsule_surface(const Capsule& capsule, int around) {
+CapsuleTriangles capsule_surface(const Capsule& capsule, int around) {
   const double length = (capsule.b - capsule.a).norm();
   const Vec3 axis = length > 0.0 ? Vec3((capsule.b - capsule.a) / length) : Vec3::UnitY();
   const Vec3 side = axis.unitOrthogonal(), front = axis.cross(side);
   const std::vector<Ring> rings = rings_of(capsule, axis, length, around);
 
-  CapsuleSurface surface;
+  CapsuleTriangles surface;
   const auto corners = static_cast<std::uint32_t>(around);
   const auto inner = static_cast<std::uint32_t>(rings.size()) - 2; // without the poles
   surface.positions.push_back(rings.front().centre);

@@ -23,7 +23,7 @@ struct SurfaceView {
 /// stands an infinitely small step beside its place, so that what touches is told apart). Where two triangles go
 /// through each other their pairs, two as a rule, are linked. A crossing is what is linked so: one connected curve of
 /// intersection. A finger through a sheet is one, however many triangles it tears; an arm through both walls of a tube
-/// is two; a surface that only touches may be one or none, never many.
+/// is two; a place where surfaces only touch may be one or none.
 ///
 /// What does not meet now is not counted: a closed surface swallowed whole, or cloth that went through between frames.
 struct SurfaceCrossings {

@@ -157,7 +157,7 @@ SurfacesThrough surfaces_through(const cloth::Garment& garment, std::span<const 
   const std::vector<Vec3> parted = parted_layers(garment, positions);
   SurfacesThrough found;
   for (const proxies::Capsule& capsule : capsules) {
-    const proxies::CapsuleSurface solid = proxies::capsule_surface(capsule, k_around);
+    const proxies::CapsuleTriangles solid = proxies::capsule_surface(capsule, k_around);
     found.colliders += proxies::crossings_between(cloth, {solid.positions, solid.triangles}).crossings;
   }
   std::vector<std::pair<int, int>> sewn;

@@ -46,7 +46,7 @@ Mesh sheet(int n, double z, double jitter, std::uint64_t seed = 1) {
 }
 
 Mesh solid(const Capsule& capsule, int around = 16) {
-  const CapsuleSurface surface = capsule_surface(capsule, around);
+  const CapsuleTriangles surface = capsule_surface(capsule, around);
   return {surface.positions, surface.triangles};
 }
 
@@ -244,14 +244,14 @@ TEST(SurfaceCrossings, WhatIsNoPlaceIsNotThere) {
   EXPECT_EQ(crossings_between(tiny.view(), needle.view()).crossings, 1);
 }
 
-TEST(CapsuleSurface, IsShutLiesOnTheSolidAndIsNoDeeperThanItSays) {
+TEST(CapsuleTriangles, IsShutLiesOnTheSolidAndIsNoDeeperThanItSays) {
   std::mt19937_64 random(13);
   for (int trial = 0; trial < 60; ++trial) {
     const Vec3 a = test::random_point(random, 0.3), b = trial % 5 ? test::random_point(random, 0.3) : a;
     const double radius = 0.1, taper = trial % 5 ? test::random_taper(random, radius, trial) : 0.0;
     const Capsule capsule{a, trial % 7 ? b : a + 0.1 * (b - a), radius, taper}; // some hold their other end
     const int around = 3 + trial % 30;
-    const CapsuleSurface surface = capsule_surface(capsule, around);
+    const CapsuleTriangles surface = capsule_surface(capsule, around);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
     double volume = 0.0;
     const double cosine = std::cos(std::numbers::pi / around);
