@@ -91,7 +91,8 @@ TEST(Video, IsPlayable) {
 
 TEST(Video, RatesOfTelevisionAreTakenForWhatTheyAre) {
   const fs::path folder = test::scratch_folder();
-  const ScopedPath path(fake_ffmpeg(folder, "echo \"$@\" > '" + (folder / "words").string() + "'; cat > /dev/null\n"));
+  const ScopedPath path(
+      fake_ffmpeg(folder, "echo \"$@\" > '" + (folder / "words").string() + "'; /bin/cat > /dev/null\n"));
   for (const auto& [rate, text] : {std::pair{29.97, "30000/1001"},
                                    {23.976, "24000/1001"},
                                    {59.94, "60000/1001"},
