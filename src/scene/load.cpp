@@ -159,8 +159,10 @@ LoadedScene load_scene(const SceneDescription& description) {
     scene.notes.push_back(description.character.filename().string() + ": " + note);
   scene.motion = within_memory(motion_file(description), [&] { return load_motion(description, import, scene.notes); });
   scene.character = std::move(import.character);
-  if (description.interpolation)
+  if (description.interpolation) {
+    check_poses(rig::key_times(scene.motion).size(), scene.character.skeleton, motion_file(description));
     rig::set_interpolation(scene.motion, scene.character.skeleton, *description.interpolation);
+  }
   rig::set_skinning(scene.character.skin, scene.character.mesh, description.skinning, description.character.string());
 
   if (description.proxies)

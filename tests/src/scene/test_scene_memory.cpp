@@ -114,6 +114,36 @@ TEST_F(SceneMemory, AClipOfMorePosesThanThereIsRoomFor) {
   }
 }
 
+TEST_F(SceneMemory, ChannelsThatWouldMakeMoreKeyPosesThanThereIsRoomFor) {
+  std::string times, values, text = read_file(source_file("assets/characters/dancer.dae"));
+  for (int k = 0; k < 4000; ++k) {
+    times += std::to_string(k) + " ";
+    values += k % 2 ? "1 " : "0 ";
+  }
+  const auto source = [](const std::string& id, const std::string& numbers) {
+    return "<source id=\"" + id + "\"><float_array id=\"" + id + "-a\" count=\"4000\">" + numbers +
+           "</float_array><technique_common><accessor source=\"#" + id +
+           "-a\" count=\"4000\"><param type=\"float\"/></accessor></technique_common></source>";
+  };
+  const std::string animation =
+      "<library_animations><animation>" + source("in", times) + source("out", values) +
+      R"(<sampler id="s"><input semantic="INPUT" source="#in"/><input semantic="OUTPUT")" +
+      R"x( source="#out"/></sampler><channel source="#s" target="mixamorig_Hips/transform(3)(0)"/>)x" +
+      "</animation></library_animations>";
+  text.insert(text.find("<library_visual_scenes"), animation);
+  write_file(path("moved.dae"), text);
+  const auto scene = [&](const std::string& more) {
+    write_file(scene_, R"({"character": "moved.dae", "motion": {"animation": 0})" + more + "}");
+  };
+  const Variable small(k_variable, "0.05");
+  scene("");
+  EXPECT_NO_THROW(load_scene(read_scene(scene_))) << "the channels themselves are small";
+  scene(R"(, "interpolation": "slerp")");
+  const InputError error = refusal();
+  EXPECT_EQ(error.file(), path("moved.dae"));
+  EXPECT_THAT(error.found(), HasSubstr(" poses of 52 joints"));
+}
+
 TEST_F(SceneMemory, AVariableThatSaysNothingIsTold) {
   const Variable bad(k_variable, "lots");
   EXPECT_EQ(refusal().file(), "$TUTU_MEMORY_GIB");
