@@ -149,7 +149,7 @@ std::vector<ChannelClip> build_clips(const FileScene& scene, const std::vector<N
     clip.end = animation.end;
     clip.still = still;
     const std::string place = "animation " + clip.name;
-    report.notes.insert(report.notes.end(), animation.notes.begin(), animation.notes.end());
+    for (const std::string& note : animation.notes) report.notes.push_back(place + ": " + note);
 
     std::size_t foreign = 0;
     for (const NodeMotion& motion : animation.nodes)

@@ -1,6 +1,7 @@
 // Keys as assimp keeps them: times, values, and no law between. They are taken as linear.
 #include "rig/error.h"
 #include "rig/import/assimp/load.h"
+#include "rig/import/detail/parts.h"
 
 #include <assimp/anim.h>
 #include <assimp/scene.h>
@@ -96,8 +97,7 @@ std::vector<FileAnimation> animations_of(const aiScene& from, const FileScene& s
       motions.emplace(node, std::move(motion));
     }
     for (auto& [node, motion] : motions) animation.nodes.push_back(std::move(motion));
-    if (nowhere > 0)
-      animation.notes.push_back(place + ": " + std::to_string(nowhere) + " channels of nodes that the file has not");
+    if (nowhere > 0) animation.notes.push_back(count_of(nowhere, "channel") + " of nodes that the file has not");
   }
   return animations;
 }

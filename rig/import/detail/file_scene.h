@@ -68,7 +68,7 @@ struct FileAnimation {
   std::string name;               ///< may be empty
   double start = 0.0, end = 0.0;  ///< s, as the file has its time line
   std::vector<NodeMotion> nodes;  ///< rising nodes
-  std::vector<std::string> notes; ///< of what it could not say as it stands in the file
+  std::vector<std::string> notes; ///< of what it could not say as it stands in the file; read behind its name
 };
 
 struct FileScene {

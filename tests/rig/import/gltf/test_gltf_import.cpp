@@ -163,6 +163,18 @@ TEST(GltfImport, WithoutInverseBindsRestsAsItsNodesStand) {
   EXPECT_THAT(import.report.notes, Contains(HasSubstr("say nothing of a bind pose")));
 }
 
+TEST(GltfImport, NotesOfAnAnimationNameIt) {
+  GltfBody body({.morph = 0.5});
+  GltfMaker& maker = body.maker;
+  const int times = maker.add_accessor({0, 1}, "SCALAR"), weights = maker.add_accessor({0, 1}, "SCALAR");
+  nlohmann::json& animation = maker.root["animations"][0];
+  animation["samplers"].push_back({{"input", times}, {"output", weights}});
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size() - 1}, {"target", {{"node", body.body_node}, {"path", "weights"}}}});
+  const Import import = import_character(GltfMaker::write(scratch_folder() / "body.glb", maker.glb()));
+  EXPECT_THAT(import.report.notes, Contains(HasSubstr("animation wave: it animates the weights of morph targets")));
+}
+
 TEST(GltfImport, AVrmIsReadAsWhatItIs) {
   GltfBody body({});
   body.maker.root["extensionsUsed"] = {"VRM"};
