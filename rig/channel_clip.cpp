@@ -56,13 +56,10 @@ Clip key_poses(const ChannelClip& clip, const Skeleton& skeleton) {
   result.joint_count = skeleton.joint_count();
   result.times = key_times(clip);
   result.local.resize(result.times.size() * clip.still.size());
-  ChannelClip once = clip;
-  once.extrapolation = Extrapolation::clamp; // the last key is the last one, not the first again
-  for (std::size_t k = 0; k < result.times.size(); ++k)
-    sample(once, result.times[k], {result.local.data() + k * clip.still.size(), clip.still.size()});
+  for (std::size_t k = 0; k < result.times.size(); ++k) // both ends of what loops are themselves
+    sample(clip, result.times[k], {result.local.data() + k * clip.still.size(), clip.still.size()});
   result.airborne.assign(result.times.size(), false);
-  for (int j = 0; j < result.joint_count; ++j)
-    if (skeleton.parents[j] == k_no_parent) result.roots.push_back(j);
+  result.roots = roots_of(skeleton);
   return result;
 }
 

@@ -97,8 +97,7 @@ Clip build_clip(const RawClip& raw, const Skeleton& skeleton) {
     }
     clip.airborne.push_back(raw.keys[k].airborne);
   }
-  for (int j = 0; j < clip.joint_count; ++j)
-    if (skeleton.parents[j] == k_no_parent) clip.roots.push_back(j);
+  clip.roots = roots_of(skeleton);
   make_flights(clip, raw.file);
   set_interpolation(clip, raw.interpolation);
   return clip;

@@ -1,6 +1,7 @@
 #include "rig/curve.h"
 
 #include "rig/error.h"
+#include "rig/interpolation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +14,6 @@ using Vec4 = Eigen::Vector4d;
 Vec3 between(const Vec3& a, const Vec3& b, double s) { return a + s * (b - a); }
 Vec4 between(const Vec4& a, const Vec4& b, double s) { return Quat(a).slerp(s, Quat(b)).coeffs(); }
 
-/// [glTF 2.0, C.5]; h: the distance of the keys, s.
-template <typename Value>
-Value hermite_between(const Value& a, const Value& b, const Value& leaving, const Value& arriving, double h, double s) {
-  const double s2 = s * s, s3 = s2 * s;
-  return (2.0 * s3 - 3.0 * s2 + 1.0) * a + h * (s3 - 2.0 * s2 + s) * leaving + (3.0 * s2 - 2.0 * s3) * b +
-         h * (s3 - s2) * arriving;
-}
-
 template <typename Value> Value raw_value_at(const Curve<Value>& curve, double time) {
   const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), time);
   // NaN compares as behind every key; it is held at the last one.
@@ -29,7 +22,7 @@ template <typename Value> Value raw_value_at(const Curve<Value>& curve, double t
   if (after == curve.times.end() || curve.laws[k] == Law::step) return curve.values[k];
   const double h = curve.times[k + 1] - curve.times[k], s = (time - curve.times[k]) / h;
   if (curve.laws[k] == Law::linear) return between(curve.values[k], curve.values[k + 1], s);
-  return hermite_between(curve.values[k], curve.values[k + 1], curve.leaving[k], curve.arriving[k + 1], h, s);
+  return hermite(curve.values[k], curve.values[k + 1], curve.leaving[k], curve.arriving[k + 1], h, s);
 }
 
 template <typename Value>

@@ -4,6 +4,16 @@
 #include <cmath>
 
 namespace tutu::rig {
+namespace {
+
+/// Written from `a` on: what neither moves nor has velocity keeps its bits.
+template <typename Value>
+Value cubic(const Value& a, const Value& b, const Value& va, const Value& vb, double h, double s) {
+  const double r = 1.0 - s;
+  return a + (s * s * (3.0 - 2.0 * s)) * (b - a) + (h * s * r * r) * va - (h * s * s * r) * vb;
+}
+
+} // namespace
 
 Vec3 log_of(const Quat& rotation) {
   const double side = rotation.w() < 0.0 ? -1.0 : 1.0, sine = rotation.vec().norm();
@@ -35,9 +45,12 @@ Vec3 monotone_slope(const Vec3& left, const Vec3& right, double h_left, double h
 }
 
 Vec3 hermite(const Vec3& a, const Vec3& b, const Vec3& va, const Vec3& vb, double h, double s) {
-  // Written from `a` on: what neither moves nor has velocity keeps its bits.
-  const double r = 1.0 - s;
-  return a + (s * s * (3.0 - 2.0 * s)) * (b - a) + (h * s * r * r) * va - (h * s * s * r) * vb;
+  return cubic(a, b, va, vb, h, s);
+}
+
+Eigen::Vector4d hermite(const Eigen::Vector4d& a, const Eigen::Vector4d& b, const Eigen::Vector4d& va,
+                        const Eigen::Vector4d& vb, double h, double s) {
+  return cubic(a, b, va, vb, h, s);
 }
 
 Quat hermite(const Quat& a, const Quat& b, const Vec3& va, const Vec3& vb, double h, double s) {

@@ -19,6 +19,8 @@ Vec3 monotone_slope(const Vec3& left, const Vec3& right, double h_left, double h
 /// The cubic from `a` to `b` in the time `h` (s), with velocities `va` at the one and `vb` at the other end; s in
 /// [0, 1].
 Vec3 hermite(const Vec3& a, const Vec3& b, const Vec3& va, const Vec3& vb, double h, double s);
+Eigen::Vector4d hermite(const Eigen::Vector4d& a, const Eigen::Vector4d& b, const Eigen::Vector4d& va,
+                        const Eigen::Vector4d& vb, double h, double s);
 
 /// The same for rotations: with angular velocities in the frame that turns (rad/s), the cumulative cubic
 ///   q(s) = a exp(w1 (1 - (1 - s)^3)) exp(w2 (3 s^2 - 2 s^3)) exp(w3 s^3),

@@ -15,12 +15,6 @@ std::vector<double> keys_of(const ChannelClip& clip) { return key_times(clip); }
 
 } // namespace
 
-const std::string& Motion::name() const {
-  return std::visit([](const auto& clip) -> const std::string& { return clip.name; }, *this);
-}
-Extrapolation Motion::extrapolation() const {
-  return std::visit([](const auto& clip) { return clip.extrapolation; }, *this);
-}
 double Motion::start() const {
   return std::visit([](const auto& clip) { return start_of(clip); }, *this);
 }

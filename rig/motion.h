@@ -5,7 +5,6 @@
 #include "rig/clip.h"
 
 #include <span>
-#include <string>
 #include <variant>
 #include <vector>
 
@@ -15,8 +14,6 @@ namespace tutu::rig {
 struct Motion : std::variant<Clip, ChannelClip> {
   using variant::variant;
 
-  const std::string& name() const;
-  Extrapolation extrapolation() const;
   double start() const;    ///< s, of the first pose
   double duration() const; ///< s
   int joint_count() const;

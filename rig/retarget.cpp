@@ -109,8 +109,7 @@ Clip retarget(const Clip& clip, const Skeleton& source, const Skeleton& target, 
       result.local.push_back(local);
     }
   }
-  for (int t = 0; t < target.joint_count(); ++t)
-    if (target.parents[t] == k_no_parent) result.roots.push_back(t);
+  result.roots = roots_of(target);
   if (partner[result.roots.front()] != k_unpaired) {
     result.airborne = clip.airborne;
     make_flights(result, "");

@@ -35,6 +35,7 @@
 #include "rig/io/file_io.h"          // IWYU pragma: export
 #include "rig/io/json_file.h"        // IWYU pragma: export
 #include "rig/io/memory_limit.h"     // IWYU pragma: export
+#include "rig/length_unit.h"         // IWYU pragma: export
 #include "rig/mannequin/mannequin.h" // IWYU pragma: export
 #include "rig/math.h"                // IWYU pragma: export
 #include "rig/mesh.h"                // IWYU pragma: export

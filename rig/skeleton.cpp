@@ -74,6 +74,13 @@ void local_from_model(const Skeleton& skeleton, std::span<const Transform> model
   }
 }
 
+std::vector<int> roots_of(const Skeleton& skeleton) {
+  std::vector<int> roots;
+  for (int j = 0; j < skeleton.joint_count(); ++j)
+    if (skeleton.parents[j] == k_no_parent) roots.push_back(j);
+  return roots;
+}
+
 std::vector<Transform> rest_model(const Skeleton& skeleton) {
   std::vector<Transform> model(skeleton.joint_count());
   model_from_local(skeleton, skeleton.rest_local, model);

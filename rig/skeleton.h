@@ -43,6 +43,9 @@ Transform model_of_joint(const Skeleton& skeleton, std::span<const Transform> lo
 /// The inverse of model_from_local.
 void local_from_model(const Skeleton& skeleton, std::span<const Transform> model, std::span<Transform> local);
 
+/// The joints without a parent, rising.
+std::vector<int> roots_of(const Skeleton& skeleton);
+
 /// model_from_joint of every joint at rest.
 std::vector<Transform> rest_model(const Skeleton& skeleton);
 

@@ -1,5 +1,7 @@
 #include "rig/text.h"
 
+#include <algorithm>
+
 namespace tutu {
 namespace {
 
@@ -48,6 +50,15 @@ std::string plain_text(std::string_view text, char instead) {
     text.remove_prefix(first.size);
   }
   return plain;
+}
+
+std::string line_and_column(std::string_view text, std::size_t offset) {
+  offset = std::min(offset, text.size());
+  const std::string_view before = text.substr(0, offset);
+  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+  const std::size_t start = before.rfind('\n');
+  const std::size_t column = start == std::string_view::npos ? offset : offset - start - 1;
+  return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
 }
 
 } // namespace tutu

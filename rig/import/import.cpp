@@ -4,6 +4,8 @@
 #include "rig/import/detail/isolated.h"
 #include "rig/import/detail/parts.h"
 
+#include <algorithm>
+#include <cassert>
 #include <set>
 
 namespace tutu::rig {
@@ -41,6 +43,12 @@ Import import_loaded(const import_detail::FileScene& scene, const ImportOptions&
 }
 
 } // namespace
+
+RestPose rest_pose_named(std::string_view name) {
+  const auto found = std::ranges::find(k_rest_pose_names, name);
+  assert(found != k_rest_pose_names.end());
+  return static_cast<RestPose>(found - k_rest_pose_names.begin());
+}
 
 Import import_character(const std::filesystem::path& file, const ImportOptions& options) {
   if (options.max_influences != 4 && options.max_influences != 8)

@@ -3,6 +3,7 @@
 
 #include "rig/channel_clip.h"
 #include "rig/character.h"
+#include "rig/length_unit.h"
 
 #include <array>
 #include <filesystem>
@@ -34,6 +35,8 @@ enum class RestPose {
   node  ///< where the file's nodes stand, which may be in the middle of a leap
 };
 inline constexpr std::array<std::string_view, 2> k_rest_pose_names{"bind", "node"};
+/// Of one of k_rest_pose_names.
+RestPose rest_pose_named(std::string_view name);
 
 struct ImportOptions {
   int max_influences = 4; ///< 4 or 8
@@ -41,10 +44,6 @@ struct ImportOptions {
   std::optional<double> height = std::nullopt;          ///< m: the body is made this high, whatever the file's unit
   std::optional<double> metres_per_unit = std::nullopt; ///< in place of what the file says; not beside a height
 };
-
-/// Metres in a unit: of "m", "cm", "mm", "dm", "in", "ft" or their names ("centimetres"), or of a number of metres
-/// ("0.01"). None for anything else.
-std::optional<double> metres_in(std::string_view unit);
 
 struct Import {
   Character character;

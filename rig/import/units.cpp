@@ -4,26 +4,16 @@
 #include "rig/import/import.h"
 
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
-namespace tutu::rig {
-using namespace import_detail;
+namespace tutu::rig::import_detail {
 namespace {
 
 constexpr double k_least_height = 0.3, k_most_height = 3.0; ///< m: of a person, or what dances like one
 constexpr double k_usual_height = 1.7;                      ///< m: a likely unit comes nearest to it
 constexpr double k_smallest = 0.05;                         ///< m: below, a body is in the wrong unit
-
-struct Unit {
-  const char* symbol;
-  const char* name;
-  double metres;
-};
-constexpr Unit k_units[] = {{"m", "metres", 1.0},     {"cm", "centimetres", 0.01}, {"mm", "millimetres", 0.001},
-                            {"in", "inches", 0.0254}, {"ft", "feet", 0.3048},      {"dm", "decimetres", 0.1}};
 
 std::string number(double value) {
   char text[32];
@@ -82,9 +72,9 @@ Quat rotation_to_y_up(char axis) {
 /// How near a height is to that of a person, by its logarithm; 0 is nearest.
 double unlikeliness(double height) { return std::abs(std::log(height / k_usual_height)); }
 
-const Unit& nearest_unit(double height) {
-  const Unit* best = k_units;
-  for (const Unit& unit : k_units)
+const LengthUnit& nearest_unit(double height) {
+  const LengthUnit* best = k_length_units.data();
+  for (const LengthUnit& unit : k_length_units)
     if (unlikeliness(height * unit.metres) < unlikeliness(height * best->metres) - 1e-12) best = &unit;
   return *best;
 }
@@ -92,7 +82,7 @@ const Unit& nearest_unit(double height) {
 /// By how much a height in metres is likely wrong: a unit was left out or applied twice.
 double likely_factor(double height) {
   double best = 1.0;
-  for (const Unit& unit : k_units)
+  for (const LengthUnit& unit : k_length_units)
     for (const double factor : {unit.metres, 1.0 / unit.metres})
       if (unlikeliness(height * factor) < unlikeliness(height * best) - 1e-12) best = factor;
   return best;
@@ -105,18 +95,6 @@ std::string proposal(double height) {
 }
 
 } // namespace
-
-std::optional<double> metres_in(std::string_view text) {
-  for (const Unit& unit : k_units)
-    if (text == unit.symbol || text == unit.name) return unit.metres;
-  double metres = 0.0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), metres);
-  if (failure != std::errc() || end != text.data() + text.size() || !(metres > 0.0 && metres <= k_largest_number))
-    return std::nullopt;
-  return metres;
-}
-
-namespace import_detail {
 
 Conversion choose_conversion(const FileScene& scene, const std::vector<Node>& nodes, const Joints& joints,
                              const std::vector<Surface>& surfaces, const ImportOptions& options, ImportReport& report) {
@@ -138,7 +116,7 @@ Conversion choose_conversion(const FileScene& scene, const std::vector<Node>& no
   } else if (said) {
     report.metres_per_unit = *said;
   } else if (!(height >= k_least_height && height <= k_most_height)) {
-    const Unit& unit = nearest_unit(height);
+    const LengthUnit& unit = nearest_unit(height);
     report.metres_per_unit = unit.metres;
     report.notes.push_back("no unit in the file: its height of " + number(height) + " read as " + unit.name);
   }
@@ -155,5 +133,4 @@ Conversion choose_conversion(const FileScene& scene, const std::vector<Node>& no
   return conversion;
 }
 
-} // namespace import_detail
-} // namespace tutu::rig
+} // namespace tutu::rig::import_detail

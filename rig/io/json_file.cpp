@@ -29,16 +29,6 @@ std::string listed(std::span<const std::string_view> names) {
 /// Number for a message: as short as it can be.
 std::string shown(double value) { return json(value).dump(); }
 
-/// "line 3, column 14" of a byte offset that the parser reports.
-std::string place_of(std::string_view text, std::size_t offset) {
-  offset = std::min(offset, text.size());
-  const std::string_view before = text.substr(0, offset);
-  const auto line = 1 + std::count(before.begin(), before.end(), '\n');
-  const std::size_t start = before.rfind('\n');
-  const std::size_t column = start == std::string_view::npos ? offset : offset - start - 1;
-  return "line " + std::to_string(line) + ", column " + std::to_string(std::max<std::size_t>(column, 1));
-}
-
 /// "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ..." -> "syntax error ...".
 std::string reason_of(const char* what) {
   std::string text = what;
@@ -52,7 +42,7 @@ std::string place_of_number(std::string_view text, const std::string& reason) {
   const std::size_t start = reason.find('\''), end = reason.rfind('\'');
   if (start == std::string::npos || end <= start) return "";
   const std::size_t offset = text.find(reason.substr(start + 1, end - start - 1));
-  return offset == std::string_view::npos ? "" : place_of(text, offset + 1);
+  return offset == std::string_view::npos ? "" : line_and_column(text, offset + 1);
 }
 
 /// Bytes that a value takes in the tree, with what readers of it take for a while (JsonValue::items), at the most: of a
@@ -151,7 +141,7 @@ JsonValue JsonValue::parse(std::string_view text, std::string name) {
   try {
     document->root = json::parse(text, nullptr, true, true);
   } catch (const json::parse_error& error) {
-    throw InputError(document->file, place_of(text, error.byte), reason_of(error.what()), "JSON");
+    throw InputError(document->file, line_and_column(text, error.byte), reason_of(error.what()), "JSON");
   } catch (const json::exception& error) {
     const std::string reason = reason_of(error.what());
     throw InputError(document->file, place_of_number(text, reason), reason, "JSON with finite numbers");

@@ -5,6 +5,7 @@
 #include "rig/io/file_io.h"
 #include "rig/io/json_file.h"
 #include "rig/io/memory_limit.h"
+#include "rig/length_unit.h"
 
 #include <algorithm>
 #include <array>
@@ -140,19 +141,8 @@ std::vector<int> read_joints(const std::filesystem::path& file, const Skeleton& 
   return joints;
 }
 
-struct Unit {
-  const char* name;
-  double per_metre;
-};
-constexpr std::array<Unit, 6> k_units = {{{"metres", 1.0},
-                                          {"decimetres", 10.0},
-                                          {"centimetres", 100.0},
-                                          {"millimetres", 1000.0},
-                                          {"inches", 1.0 / 0.0254},
-                                          {"feet", 1.0 / 0.3048}}};
-
 /// The unit in which the bones of the file are as long as the skeleton's.
-Unit unit_of(const RawClip& clip, const std::vector<int>& joints, const Skeleton& skeleton) {
+LengthUnit unit_of(const RawClip& clip, const std::vector<int>& joints, const Skeleton& skeleton) {
   constexpr double k_shortest_bone = 1e-6; // m; shorter ones say nothing about the unit
   constexpr double k_near = 0.1; // a proportion may differ this much from the skeleton's and still be the same unit
   std::vector<double> ratios;
@@ -162,11 +152,11 @@ Unit unit_of(const RawClip& clip, const std::vector<int>& joints, const Skeleton
     for (const RawClip::Key& key : clip.keys)
       ratios.push_back(key.joints.at(skeleton.names[joint]).translation->norm() / length);
   }
-  if (ratios.empty()) return k_units[0];
+  if (ratios.empty()) return k_length_units[0];
   const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
   std::nth_element(ratios.begin(), middle, ratios.end());
-  for (const Unit& unit : k_units)
-    if (std::abs(*middle / unit.per_metre - 1.0) <= k_near) return unit;
+  for (const LengthUnit& unit : k_length_units)
+    if (std::abs(*middle / unit.per_metre() - 1.0) <= k_near) return unit;
   throw InputError(clip.file, "", "bones " + std::to_string(*middle) + " times as long as the skeleton's in metres",
                    "translations in metres, decimetres, centimetres, millimetres, inches or feet");
 }
@@ -223,10 +213,10 @@ RawClip read_three_texts(const ThreeTexts& files, const Skeleton& skeleton, std:
     }
   }
 
-  const Unit unit = unit_of(clip, joints, skeleton);
-  if (unit.per_metre != 1.0) {
+  const LengthUnit unit = unit_of(clip, joints, skeleton);
+  if (unit.per_metre() != 1.0) {
     for (RawClip::Key& key : clip.keys)
-      for (auto& [name, joint] : key.joints) *joint.translation /= unit.per_metre;
+      for (auto& [name, joint] : key.joints) *joint.translation /= unit.per_metre();
     if (notes)
       notes->push_back("The translations of " + clip.file + " are in " + unit.name +
                        ", as their bones tell; they were converted to metres.");

@@ -14,14 +14,12 @@ void add_import_options(CLI::App& command, rig::ImportOptions& import, const std
           ->check(CLI::PositiveNumber);
   const auto set_unit = [&import](const std::string& word) { import.metres_per_unit = rig::metres_in(word); };
   const auto is_unit = [](const std::string& word) {
-    return rig::metres_in(word) ? std::string() : word + ": expected m, cm, mm, dm, in, ft, or the metres in a unit";
+    return rig::metres_in(word) ? std::string() : word + ": expected " + rig::k_expected_unit;
   };
   command.add_option_function<std::string>("--unit", set_unit, "The file's unit, in place of what it says")
       ->check(CLI::Validator(is_unit, "m, cm, mm, dm, in, ft or metres"))
       ->excludes(height);
-  const auto set_rest = [&import](const std::string& word) {
-    import.rest = word == rig::k_rest_pose_names[1] ? rig::RestPose::node : rig::RestPose::bind;
-  };
+  const auto set_rest = [&import](const std::string& word) { import.rest = rig::rest_pose_named(word); };
   command
       .add_option_function<std::string>("--rest", set_rest,
                                         "Rest in the pose the skin was bound in, or where the file's nodes stand")

@@ -85,7 +85,7 @@ GarmentEntry read_garment_entry(const JsonValue& json) {
 double read_unit(const JsonValue& value) {
   if (value.is_number()) return value.positive();
   const std::optional<double> metres = rig::metres_in(value.string());
-  if (!metres) throw value.error("m, cm, mm, dm, in, ft, or the metres in a unit");
+  if (!metres) throw value.error(rig::k_expected_unit);
   return *metres;
 }
 
@@ -107,7 +107,7 @@ void read_character(const JsonValue& value, SceneFiles& scene) {
     import.metres_per_unit = read_unit(*unit);
   }
   if (const auto rest = value.find("rest"))
-    import.rest = rest->string_among(rig::k_rest_pose_names) == "node" ? rig::RestPose::node : rig::RestPose::bind;
+    import.rest = rig::rest_pose_named(rest->string_among(rig::k_rest_pose_names));
 }
 
 } // namespace

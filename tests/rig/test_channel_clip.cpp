@@ -161,7 +161,6 @@ TEST(Motion, IsEitherKind) {
   skeleton.parents = {k_no_parent, 0};
   skeleton.rest_local.resize(2);
   Motion motion = late();
-  EXPECT_EQ(motion.name(), "late");
   EXPECT_EQ(motion.duration(), 2.25);
   EXPECT_EQ(motion.joint_count(), 2);
   EXPECT_EQ(first_pose(motion)[0].translation, Vec3(1, 0, 0));

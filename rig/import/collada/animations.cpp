@@ -3,6 +3,7 @@
 #include "rig/import/collada/node_transform.h"
 #include "rig/import/collada/sampler.h"
 #include "rig/import/collada/source.h"
+#include "rig/import/detail/parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,11 +30,7 @@ std::string name_of(const pugi::xml_node& element) {
 
 /// "3 channels on ...: a, b, c and 4 more".
 std::string listed(const std::vector<std::string>& names, const std::string& what) {
-  constexpr std::size_t k_most = 6;
-  std::string text = std::to_string(names.size()) + (names.size() == 1 ? " channel " : " channels ") + what + ": ";
-  for (std::size_t i = 0; i < std::min(names.size(), k_most); ++i) text += (i ? ", " : "") + names[i];
-  if (names.size() > k_most) text += " and " + std::to_string(names.size() - k_most) + " more";
-  return text;
+  return count_of(names.size(), "channel") + " " + what + ": " + list_of(names);
 }
 
 /// Fills a FileAnimation from channels.

@@ -1,12 +1,13 @@
 #include "rig/import/curves/sampling.h"
 
-#include <Eigen/SVD>
+#include "rig/import/detail/parts.h"
+#include "rig/interpolation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
-#include <type_traits>
 
 namespace tutu::rig::import_detail {
 namespace {
@@ -25,13 +26,12 @@ Vec4 between(const Vec4& a, const Vec4& b, double s) { return Quat(a).slerp(s, Q
 const Vec3& aligned(const Vec3&, const Vec3& value) { return value; }
 Vec4 aligned(const Vec4& to, const Vec4& value) { return to.dot(value) < 0.0 ? Vec4(-value) : value; }
 
-/// Slopes over the whole way, s in [0, 1]; of rotations normalised, as a curve does it.
-template <typename Value>
-Value cubic_between(const Value& a, const Value& b, const Value& leaving, const Value& arriving, double s) {
-  const double r = 1.0 - s;
-  const Value result = a + (s * s * (3.0 - 2.0 * s)) * (b - a) + (s * r * r) * leaving - (s * s * r) * arriving;
-  if constexpr (std::is_same_v<Value, Vec4>) return result.normalized();
-  return result;
+/// As a curve has it: slopes over the whole way, s in [0, 1].
+Vec3 cubic_between(const Vec3& a, const Vec3& b, const Vec3& leaving, const Vec3& arriving, double s) {
+  return hermite(a, b, leaving, arriving, 1.0, s);
+}
+Vec4 cubic_between(const Vec4& a, const Vec4& b, const Vec4& leaving, const Vec4& arriving, double s) {
+  return hermite(a, b, leaving, arriving, 1.0, s).normalized();
 }
 
 /// May a curve have it? (Between keys that are next to one time it may not.)
@@ -176,15 +176,12 @@ std::vector<double> merged_times(const std::vector<const ScalarCurve*>& curves) 
 }
 
 Pose pose_of(const Eigen::Affine3d& map, bool& has_shear) {
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(map.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d rotation = svd.matrixU() * svd.matrixV().transpose();
-  if (rotation.determinant() < 0.0) rotation = -rotation;
-  const Eigen::Matrix3d stretch = rotation.transpose() * map.linear();
+  const auto [rotation, stretch] = polar(map.linear());
   const Vec3 scale = stretch.diagonal();
   constexpr double k_shear = 1e-4; // what six digits of a matrix leave in doubt is less
   if ((stretch - Eigen::Matrix3d(scale.asDiagonal())).cwiseAbs().maxCoeff() > k_shear * stretch.cwiseAbs().maxCoeff())
     has_shear = true;
-  return {map.translation(), Quat(rotation).normalized(), scale};
+  return {map.translation(), rotation, scale};
 }
 
 VectorCurve joined(const std::array<const ScalarCurve*, 3>& curves, const Vec3& constant, const Eigen::Affine3d& map,

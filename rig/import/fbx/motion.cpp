@@ -1,5 +1,6 @@
 // Takes of an FBX file: which curves move which model, and which node that is.
 #include "rig/error.h"
+#include "rig/import/detail/parts.h"
 #include "rig/import/fbx/curve_keys.h"
 #include "rig/import/fbx/fbx.h"
 #include "rig/import/fbx/model_motion.h"
@@ -14,11 +15,7 @@ namespace {
 
 /// "3 models whose ...: a, b, c and 4 more".
 std::string listed(const std::vector<std::string>& names, const std::string& what) {
-  constexpr std::size_t k_most = 6;
-  std::string text = std::to_string(names.size()) + (names.size() == 1 ? " model " : " models ") + what + ": ";
-  for (std::size_t i = 0; i < std::min(names.size(), k_most); ++i) text += (i ? ", " : "") + names[i];
-  if (names.size() > k_most) text += " and " + std::to_string(names.size() - k_most) + " more";
-  return text;
+  return count_of(names.size(), "model") + " " + what + ": " + list_of(names);
 }
 
 /// The nodes that a reader has made of models: it walks both trees side by side.

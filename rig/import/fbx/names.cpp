@@ -49,12 +49,13 @@ std::optional<FbxUniqueNames> with_unique_names(std::string_view bytes) try {
   const std::vector<const FbxObject*> models = models_of(document);
   std::set<std::string, std::less<>> taken, seen;
   for (const FbxObject* model : models) taken.emplace(model->name);
-  FbxUniqueNames result{std::string(bytes), {}};
+  FbxUniqueNames result;
   for (const FbxObject* model : models) {
     if (seen.emplace(model->name).second) continue;
     const std::optional<std::string> name = free_name(model->name, taken);
     if (!name) return std::nullopt;
     taken.insert(*name);
+    if (result.bytes.empty()) result.bytes = bytes;
     result.original.emplace(*name, model->name);
     const auto at = static_cast<std::size_t>(model->name.data() - bytes.data());
     result.bytes.replace(at, name->size(), *name);

@@ -1,5 +1,7 @@
 #include "rig/import/gltf/meshes.h"
 
+#include "rig/import/detail/parts.h"
+
 #include <algorithm>
 
 namespace tutu::rig::import_detail {
@@ -62,7 +64,7 @@ const std::vector<GltfMeshes::Part>& GltfMeshes::parts_of(const GltfValue& mesh,
   if (const auto morphed = std::count_if(weights.begin(), weights.end(), [](double w) { return w != 0.0; });
       morphed > 0)
     scene_.notes.push_back("mesh " + name + " has the shape of " +
-                           (morphed == 1 ? "1 morph target" : std::to_string(morphed) + " morph targets") +
+                           count_of(static_cast<std::size_t>(morphed), "morph target") +
                            " in it, by their default weights");
   return found->second;
 }
@@ -88,8 +90,8 @@ GltfMeshes::Part GltfMeshes::part_of(const GltfValue& primitive, const std::stri
 
 void GltfMeshes::note() const {
   for (const auto& [what, left] : left_out_)
-    scene_.notes.push_back((left.count == 1 ? "1 primitive " : std::to_string(left.count) + " primitives ") + what +
-                           " (" + (left.count == 1 ? "" : "the first: ") + left.first_place + ")");
+    scene_.notes.push_back(count_of(left.count, "primitive") + " " + what + " (" +
+                           (left.count == 1 ? "" : "the first: ") + left.first_place + ")");
 }
 
 std::array<float, 3> GltfMeshes::colour_of(const GltfValue& primitive) const {

@@ -1,7 +1,7 @@
 #include "rig/import/gltf/rotations.h"
 
 #include "rig/error.h"
-#include "rig/import/detail/file_scene.h"
+#include "rig/import/detail/parts.h"
 
 #include <cmath>
 #include <cstdio>
@@ -34,9 +34,9 @@ Eigen::Vector4d GltfRotations::unit(const Eigen::Vector4d& rotation, double roun
 
 void GltfRotations::note(FileScene& scene) const {
   if (mended_ == 0) return;
-  scene.notes.push_back((mended_ == 1 ? "1 rotation" : std::to_string(mended_) + " rotations") +
-                        " of length other than 1 (" + (mended_ == 1 ? "" : "up to ") + shown(farthest_) + "; " +
-                        (mended_ == 1 ? "" : "the first at ") + first_place_ + ") normalised");
+  scene.notes.push_back(count_of(mended_, "rotation") + " of length other than 1 (" + (mended_ == 1 ? "" : "up to ") +
+                        shown(farthest_) + "; " + (mended_ == 1 ? "" : "the first at ") + first_place_ +
+                        ") normalised");
 }
 
 } // namespace tutu::rig::import_detail

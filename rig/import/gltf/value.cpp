@@ -18,14 +18,6 @@ std::string shortened(std::string_view text, std::size_t longest) {
   return plain_text(text.substr(0, longest)) + (text.size() > longest ? "..." : "");
 }
 
-std::string place_of(std::string_view text, std::size_t offset) {
-  const std::string_view before = text.substr(0, std::min(offset, text.size()));
-  const std::size_t start = before.rfind('\n');
-  const std::size_t column = start == before.npos ? before.size() : before.size() - start - 1;
-  return "line " + std::to_string(1 + std::count(before.begin(), before.end(), '\n')) + ", column " +
-         std::to_string(std::max<std::size_t>(column, 1));
-}
-
 /// "[json.exception.parse_error.101] parse error at line 1, column 5: syntax error ..." -> "syntax error ...".
 std::string reason_of(std::string_view what) {
   if (const std::size_t bracket = what.find("] "); bracket != what.npos) what.remove_prefix(bracket + 2);
@@ -67,7 +59,7 @@ public:
   bool parse_error(std::size_t offset, const std::string&, const json::exception& error) override {
     met_foreign_bytes_ = std::string_view(error.what()).find("ill-formed UTF-8") != std::string_view::npos;
     if (met_foreign_bytes_) return false;
-    throw InputError(file_, place_of(text_, offset), reason_of(error.what()), "JSON");
+    throw InputError(file_, line_and_column(text_, offset), reason_of(error.what()), "JSON");
   }
 
 private:

@@ -21,8 +21,7 @@ rig::Clip clip_of(const EditState& state, const rig::Skeleton& skeleton, bool fl
     clip.local.insert(clip.local.end(), key.pose->begin(), key.pose->end());
     clip.airborne.push_back(flights && key.airborne);
   }
-  for (int j = 0; j < clip.joint_count; ++j)
-    if (skeleton.parents[j] == rig::k_no_parent) clip.roots.push_back(j);
+  clip.roots = rig::roots_of(skeleton);
   rig::make_flights(clip, state.name);
   rig::set_interpolation(clip, state.interpolation);
   return clip;
