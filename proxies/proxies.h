@@ -28,6 +28,7 @@
 #include "proxies/contact.h"                    // IWYU pragma: export
 #include "proxies/crossing/capsule_surface.h"   // IWYU pragma: export
 #include "proxies/crossing/orientation.h"       // IWYU pragma: export
+#include "proxies/crossing/segment_passages.h"  // IWYU pragma: export
 #include "proxies/crossing/segment_triangle.h"  // IWYU pragma: export
 #include "proxies/crossing/surface_crossings.h" // IWYU pragma: export
 #include "proxies/distance/capsule_union.h"     // IWYU pragma: export

@@ -32,8 +32,7 @@ void add_product(ExactSum& sum, double sign, const ExactDifference& a, const Exa
         if (u != 0.0 && v != 0.0 && w != 0.0) sum.add_product(sign * u, v, w);
 }
 
-int exact_orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const ExactVector u = exact_vector(a, b), v = exact_vector(a, c), w = exact_vector(a, d);
+int exact_volume_sign(const ExactVector& u, const ExactVector& v, const ExactVector& w) {
   ExactSum sum;
   add_product(sum, 1.0, u.x, v.y, w.z);
   add_product(sum, 1.0, u.y, v.z, w.x);
@@ -51,8 +50,10 @@ std::optional<Vec3> exact_place(const Vec3& point) {
   return point.unaryExpr([](double x) { return std::abs(x) < k_least_exact ? 0.0 : x; });
 }
 
-int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
-  const Vec3 u = b - a, v = c - a, w = d - a;
+int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) { return volume_sign(a, b, a, c, a, d); }
+
+int volume_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e, const Vec3& f) {
+  const Vec3 u = b - a, v = d - c, w = f - e;
   const double vxwy = v.x() * w.y(), wxvy = w.x() * v.y();
   const double wxuy = w.x() * u.y(), uxwy = u.x() * w.y();
   const double uxvy = u.x() * v.y(), vxuy = v.x() * u.y();
@@ -63,7 +64,7 @@ int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const double error = k_volume_error * size;
   if (volume > error) return 1;
   if (volume < -error) return -1;
-  return exact_orientation(a, b, c, d);
+  return exact_volume_sign(exact_vector(a, b), exact_vector(c, d), exact_vector(e, f));
 }
 
 int cross_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, int axis) {

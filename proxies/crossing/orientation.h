@@ -21,6 +21,9 @@ std::optional<Vec3> exact_place(const Vec3& point);
 /// same formula of absolute values; elsewhere it is summed without rounding.
 int orientation(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d);
 
+/// The sign of (b - a) . ((d - c) x (f - e)), as exactly: of three differences that need share no point.
+int volume_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, const Vec3& e, const Vec3& f);
+
 /// The sign of one component of (b - a) x (d - c), exactly. `axis` is 0, 1 or 2.
 int cross_sign(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, int axis);
 

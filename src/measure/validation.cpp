@@ -37,14 +37,20 @@ struct FrameMeasure {
   proxies::FrameErrors errors;
   proxies::VolumeCount volume;
   ClothInBody cloth;
+  ClothCrossings<proxies::SurfaceCrossings> crossings;
 };
 
 /// What a thread needs of its own.
 struct ThreadState {
-  explicit ThreadState(const Scene& scene) : posed(scene), body(body_of(scene.character)), reach(scene) {}
+  explicit ThreadState(const Scene& scene)
+      : posed(scene), body(body_of(scene.character)), skin(skin_surface(body)), reach(scene) {
+    for (const cloth::Garment& garment : scene.garments) garments.emplace_back(garment);
+  }
 
   PosedBody posed;
   proxies::BodyMesh body;
+  proxies::CrossingSurface skin;
+  std::vector<GarmentSurface> garments;
   WearerReach reach;
 };
 
@@ -210,6 +216,21 @@ private:
     if (index >= cloth_.positions.size()) return;
     for (std::size_t g = 0; g < probes_.size(); ++g)
       probes_[g].measure(state.body, cloth_.positions[index][g], measure.cloth);
+    count_crossings(cloth_.positions[index], state, measure.crossings);
+  }
+
+  static void count_crossings(const GarmentPositions& positions, ThreadState& state,
+                              ClothCrossings<proxies::SurfaceCrossings>& found) {
+    state.skin.move(state.body.positions());
+    found = {};
+    for (std::size_t g = 0; g < positions.size(); ++g) {
+      GarmentSurface& garment = state.garments[g];
+      garment.move(positions[g]);
+      found.garments.push_back({proxies::crossings_between(garment.surface(), state.skin),
+                                garment.with(state.posed.colliders()), garment.with_itself()});
+      for (std::size_t other = 0; other < g; ++other)
+        found.each_other.add(proxies::crossings_between(state.garments[other].surface(), garment.surface()));
+    }
   }
 
   /// In the order of the frames, whatever thread measured them: sums keep their bits.
@@ -253,6 +274,7 @@ private:
     if (index < cloth_.positions.size()) {
       report.cloth = measure.cloth;
       report.cloth->particle_depths = {};
+      report.crossings = measure.crossings;
       for (const double depth : measure.cloth.particle_depths) particle_depths_.add(depth, 1.0);
     }
     result_.frames.push_back(std::move(report));
@@ -300,8 +322,15 @@ private:
 
   void finish_cloth() {
     ClothReport report;
+    report.crossings.garments.resize(scene_->garments.size());
     for (const FrameReport& frame : result_.frames) {
       if (!frame.cloth) continue;
+      for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
+        report.crossings.garments[g].body.add(frame.frame, frame.crossings.garments[g].body);
+        report.crossings.garments[g].proxies.add(frame.frame, frame.crossings.garments[g].proxies);
+        report.crossings.garments[g].itself.add(frame.frame, frame.crossings.garments[g].itself);
+      }
+      report.crossings.each_other.add(frame.frame, frame.crossings.each_other);
       report.particles.add(frame.cloth->particles);
       report.edges.add(frame.cloth->edges);
       report.triangles.add(frame.cloth->triangles);

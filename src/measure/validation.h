@@ -4,6 +4,7 @@
 #include "proxies/validate/error_figures.h"
 #include "proxies/validate/validate.h"
 #include "src/measure/cloth_in_body.h"
+#include "src/measure/crossings.h"
 #include "src/run/scene.h"
 
 #include <functional>
@@ -40,6 +41,15 @@ struct GroupErrors {
   double skin_share = 0.0; ///< of the skin's area; of a proxy, of the skin that is nearest to it
 };
 
+/// Where cloth goes through what, in one frame or over all of them.
+template <class Count> struct ClothCrossings {
+  struct OfGarment {
+    Count body, proxies, itself;
+  };
+  std::vector<OfGarment> garments; ///< in their order
+  Count each_other;                ///< between two garments, each pair once
+};
+
 struct FrameReport {
   int frame = 0;
   double time = 0.0; ///< s
@@ -48,6 +58,7 @@ struct FrameReport {
   double coverage = 0.0;
   std::vector<int> collisions, inside; ///< proxies that meet the mesh; those of them wholly inside the body
   std::optional<ClothInBody> cloth;    ///< with particle_depths empty
+  ClothCrossings<proxies::SurfaceCrossings> crossings; ///< with `cloth`
 };
 
 struct ClothReport {
@@ -55,6 +66,7 @@ struct ClothReport {
   double deepest_of_triangles = 0.0; ///< m
   double particles_p99 = 0.0;        ///< m
   std::vector<int> worst_frames;     ///< indices into Validation::frames, the deepest first
+  ClothCrossings<CrossingTally> crossings;
 };
 
 struct Validation {

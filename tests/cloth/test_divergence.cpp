@@ -5,7 +5,7 @@
 #include "cloth/recovery.h"
 #include "cloth/state/tolerances.h"
 #include "cloth/xpbd.h"
-#include "tests/support/mesh_sheet.h"
+#include "src/study/bench/mesh_sheet.h"
 
 #include <functional>
 #include <gmock/gmock.h>
@@ -31,7 +31,7 @@ Garment woven(const std::vector<Attachment>& held) {
 Garment meshed(const std::vector<Attachment>& held) {
   GarmentDescription description;
   description.file = "mesh";
-  description.shape = test::mesh_sheet(11, {-0.25, 1, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 0.2);
+  description.shape = app::mesh_sheet(11, {-0.25, 1, 0}, {0.5, 0, 0}, {0, 0, 0.5}, 0.2);
   for (const Attachment& attachment : held) {
     Attachment there;
     there.joint = attachment.joint;

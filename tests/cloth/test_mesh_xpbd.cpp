@@ -3,7 +3,7 @@
 #include "cloth/garment/springs.h"
 #include "cloth/mesh_xpbd.h"
 #include "cloth/metrics.h"
-#include "tests/support/mesh_sheet.h"
+#include "src/study/bench/mesh_sheet.h"
 
 #include <gtest/gtest.h>
 #include <numbers>
@@ -30,7 +30,7 @@ Garment garment_of(MeshShape shape, const Fabric& fabric, std::optional<double> 
 }
 
 Garment upright(int cells, const Fabric& fabric, bool held) {
-  return garment_of(test::mesh_sheet(cells, {-0.25, 1, 0}, {k_size, 0, 0}, {0, -k_size, 0}, 0.1), fabric,
+  return garment_of(app::mesh_sheet(cells, {-0.25, 1, 0}, {k_size, 0, 0}, {0, -k_size, 0}, 0.1), fabric,
                     held ? std::optional(0.9999) : std::nullopt);
 }
 
@@ -195,7 +195,7 @@ struct Cantilever {
 };
 template <class Scalar> Cantilever cantilever(int cells, const Fabric& fabric, double length, int substeps) {
   const double width = 0.6 * length;
-  MeshShape shape = test::mesh_sheet(cells, {0, 1, 0}, {width, 0, 0}, {0, 0, length});
+  MeshShape shape = app::mesh_sheet(cells, {0, 1, 0}, {width, 0, 0}, {0, 0, length});
   double step = length; // of the rows
   for (const Vec3& p : shape.positions)
     if (p.z() > 1e-9) step = std::min(step, p.z());
@@ -253,7 +253,7 @@ TYPED_TEST(MeshXpbdTest, FrictionHoldsUpToItsAngleAndSlidesBeyond) {
       fabric.drag = 0.0;
       const Vec3 downhill(0.0, -std::sin(angle), std::cos(angle)), normal(0.0, std::cos(angle), std::sin(angle));
       const Garment garment =
-          garment_of(test::mesh_sheet(6, fabric.contact_offset() * normal, {0.4, 0, 0}, 0.4 * downhill), fabric);
+          garment_of(app::mesh_sheet(6, fabric.contact_offset() * normal, {0.4, 0, 0}, 0.4 * downhill), fabric);
       MeshXpbd<TypeParam> cloth(garment);
       FrameInput input;
       input.substeps = 10;

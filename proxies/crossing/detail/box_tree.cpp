@@ -1,6 +1,7 @@
 #include "proxies/crossing/detail/box_tree.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace tutu::proxies {
@@ -8,19 +9,30 @@ namespace tutu::proxies {
 BoxTree::BoxTree(std::span<const Box> boxes) : items_(boxes.size()) {
   std::iota(items_.begin(), items_.end(), 0);
   if (!boxes.empty()) build(boxes, 0, static_cast<int>(boxes.size()));
-  for (const int item : items_) boxes_.push_back(boxes[item]);
+  boxes_.resize(items_.size());
+  refit(boxes);
+}
+
+void BoxTree::refit(std::span<const Box> boxes) {
+  for (std::size_t k = 0; k < items_.size(); ++k) boxes_[k] = boxes[items_[k]];
+  for (std::size_t k = nodes_.size(); k-- > 0;) { // children stand behind their parent
+    Node& node = nodes_[k];
+    node.box.setEmpty();
+    if (node.second_child >= 0) {
+      node.box.extend(nodes_[k + 1].box);
+      node.box.extend(nodes_[node.second_child].box);
+    } else
+      for (int item = node.first; item < node.first + node.count; ++item) node.box.extend(boxes_[item]);
+  }
 }
 
 void BoxTree::build(std::span<const Box> boxes, int first, int count) {
   constexpr int k_leaf = 4;
-  Box all, middles;
-  for (int k = first; k < first + count; ++k) {
-    all.extend(boxes[items_[k]]);
-    middles.extend(boxes[items_[k]].center());
-  }
   const std::size_t node = nodes_.size();
-  nodes_.push_back({all, first, count, -1});
+  nodes_.push_back({Box(), first, count, -1});
   if (count <= k_leaf) return;
+  Box middles;
+  for (int k = first; k < first + count; ++k) middles.extend(boxes[items_[k]].center());
   Eigen::Index axis;
   middles.sizes().maxCoeff(&axis);
   const int half = count / 2;
@@ -34,15 +46,15 @@ void BoxTree::build(std::span<const Box> boxes, int first, int count) {
 
 void BoxTree::touching(const Box& box, std::vector<int>& found) const {
   if (nodes_.empty()) return;
-  std::vector<int> open = {0};
-  while (!open.empty()) {
-    const int index = open.back();
-    open.pop_back();
+  std::array<int, 64> open = {0}; // halves of halves: no deeper than an int has bits
+  int count = 1;
+  while (count > 0) {
+    const int index = open[--count];
     const Node& node = nodes_[index];
     if (!node.box.intersects(box)) continue;
     if (node.second_child >= 0) {
-      open.push_back(index + 1);
-      open.push_back(node.second_child);
+      open[count++] = index + 1;
+      open[count++] = node.second_child;
     } else
       for (int k = node.first; k < node.first + node.count; ++k)
         if (boxes_[k].intersects(box)) found.push_back(items_[k]);

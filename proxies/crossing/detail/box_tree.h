@@ -1,4 +1,4 @@
-// A tree of boxes over things that do not move while it is asked.
+// A tree of boxes over things that do not move while it is asked; between questions they may.
 #pragma once
 
 #include "proxies/shapes.h"
@@ -10,8 +10,11 @@ namespace tutu::proxies {
 
 class BoxTree {
 public:
-  /// Boxes are finite and not empty.
+  /// Boxes are finite; an empty one (Box()) is never found.
   explicit BoxTree(std::span<const Box> boxes);
+
+  /// The same things are there now. The tree keeps its shape: good as long as what was near stays near.
+  void refit(std::span<const Box> boxes);
 
   /// Appends the indices of the boxes that share a point with `box`, in no order to rely on.
   void touching(const Box& box, std::vector<int>& found) const;

@@ -25,6 +25,10 @@ json head_of(const std::string& name, const RunSettings& setup) {
           {"threads", 1}};
 }
 
+json json_of(const CrossingTally& tally) {
+  return {{"frames", tally.frames}, {"worst", tally.worst}, {"total", tally.total}};
+}
+
 /// The worst of a variant's runs.
 struct Worst {
   StabilityRun run;
@@ -39,8 +43,11 @@ struct Worst {
     if (!why.empty()) broken.push_back(fmt::format("start {}: {}", start, fmt::join(why, "; ")));
     run.crossings += other.crossings;
     run.pierced += other.pierced;
-    run.at_end.colliders += other.at_end.colliders;
-    run.at_end.cloth += other.at_end.cloth;
+    for (CrossingTally StabilityRun::*tally : {&StabilityRun::limbs, &StabilityRun::itself}) {
+      (run.*tally).frames += (other.*tally).frames;
+      (run.*tally).worst = std::max((run.*tally).worst, (other.*tally).worst);
+      (run.*tally).total += (other.*tally).total;
+    }
     run.recoveries += other.recoveries;
     for (double StabilityRun::*figure :
          {&StabilityRun::stretch, &StabilityRun::worst_stretch, &StabilityRun::depth, &StabilityRun::speed})
@@ -58,6 +65,10 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
                   "mm   {:>5.2f} m/s   {:>3} recoveries   {:>3} substeps at most   {:.2f} ms\n",
                   name, worst.passed, worst.runs, run.crossings, run.pierced, 100.0 * run.stretch, 1e3 * run.depth,
                   run.speed, run.recoveries, run.most_substeps, ms);
+  for (const auto& [what, tally] : {std::pair("limbs", &run.limbs), std::pair("itself", &run.itself)})
+    if (tally->frames > 0)
+      report.text += fmt::format("    stands in {} in {} frames, {} places in one at worst, {} over all frames\n", what,
+                                 tally->frames, tally->worst, tally->total);
   for (const std::string& why : worst.broken) report.text += fmt::format("    {}\n", why);
   report.json["variants"].push_back(
       {{"name", name},
@@ -65,7 +76,7 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
        {"passed", worst.passed},
        {"crossings", run.crossings},
        {"pierced", run.pierced},
-       {"through_at_end", {{"colliders", run.at_end.colliders}, {"cloth", run.at_end.cloth}}},
+       {"through", {{"limbs", json_of(run.limbs)}, {"itself", json_of(run.itself)}}},
        {"stretch_pct", {{"p99", 100.0 * run.stretch}, {"max", 100.0 * run.worst_stretch}}},
        {"pen_mm", {{"max", 1e3 * run.depth}}},
        {"speed", run.speed},
@@ -89,7 +100,7 @@ StabilityReport report_scenes(const StabilityFamily& family, const RunSettings& 
     std::uint64_t hash = cloth::state_hash({});
     for (int start = 1; start <= runs && go_on(); ++start) {
       const StabilityScene scene = build(static_cast<std::uint64_t>(start));
-      const StabilityRun run = run_stability(scene, setup);
+      const StabilityRun run = run_stability(scene, setup, SurfaceLooks::every_frame);
       name = scene.name;
       worst.add(scene, run, start);
       hash = cloth::state_hash(run.end, hash);

@@ -43,12 +43,11 @@ void judge_end(const StabilityScene& scene, const std::vector<Capsule>& capsules
   for (const double depth : depths) run.depth = std::max(run.depth, depth);
   for (const Vec3& v : run.end.velocities) run.speed = std::max(run.speed, v.norm());
   run.turn_rate = turn_rate_of(run.end);
-  run.at_end = surfaces_through(scene.garment, run.end.positions, capsules);
 }
 
 } // namespace
 
-StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup) {
+StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup, SurfaceLooks looks) {
   const int parts = parts_of(setup.substeps, scene.looks);
   const double part_seconds = 1.0 / (k_stability_frames_per_second * parts);
   const int steps = static_cast<int>(std::lround(scene.seconds * k_stability_frames_per_second)) * parts;
@@ -56,6 +55,7 @@ StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup
   cloth::GuardedSolver solver(cloth::make_solver(scene.garment, setup), scene.garment);
   solver.reset(scene.start);
   CrossingCounter counter(scene.garment);
+  GarmentSurface surface(scene.garment);
 
   std::vector<Capsule> capsules, capsules_before;
   std::vector<Vec3> pins, pins_before, spin = scene.spin;
@@ -100,6 +100,11 @@ StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup
       run.failure = fmt::format("diverged in frame {}: {}", frame, cloth::what_was_found(*bad));
     else run.frames = (step + 1) / parts;
     counter.advance(solver.particles().positions, capsules);
+    if (looks == SurfaceLooks::every_frame && (step + 1) % parts == 0) {
+      surface.move(solver.particles().positions);
+      run.limbs.add(frame, surface.with(capsules));
+      run.itself.add(frame, surface.with_itself());
+    }
     for (const double s : lengthening_of(scene.garment, solver.particles()))
       run.worst_stretch = std::max(run.worst_stretch, s);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cloth/solver.h"
+#include "src/measure/crossings.h"
 #include "src/run/settings.h"
 #include "src/study/bench/crossings.h"
 #include "src/study/bench/stability_scenes.h"
@@ -17,7 +18,8 @@ struct StabilityRun {
   int crossings = 0;          ///< CrossingCounter
   int pierced = 0;            ///< triangles, summed over frames
   int pierced_at_end = 0;     ///< triangles
-  SurfacesThrough at_end;     ///< what surfaces go through each other after the last frame
+  CrossingTally limbs;        ///< places where cloth stands in limbs (GarmentSurface), in the frames looked at
+  CrossingTally itself;       ///< and in itself
   double stretch = 0.0;       ///< p99 of the lengthening of grid edges, at the end
   double worst_stretch = 0.0; ///< of any edge in any frame
   double depth = 0.0;         ///< m, of the deepest particle, at the end
@@ -29,7 +31,11 @@ struct StabilityRun {
   cloth::Particles end;
 };
 
-StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup);
+/// After which frames surfaces are held against each other: that takes several times as long as a frame.
+enum class SurfaceLooks { never, every_frame };
+
+StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup,
+                           SurfaceLooks looks = SurfaceLooks::never);
 
 /// What does not hold, in words; none: the run passed.
 std::vector<std::string> broken_limits(const StabilityScene& scene, const StabilityRun& run);

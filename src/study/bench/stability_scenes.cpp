@@ -1,5 +1,7 @@
 #include "src/study/bench/stability_scenes.h"
 
+#include "src/study/bench/mesh_sheet.h"
+
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -20,15 +22,25 @@ cloth::Fabric stage_fabric() {
   return fabric;
 }
 
-/// rows x columns particles in the plane z = 0, about x = 0, hanging down from `top`; the first row is held.
-cloth::Garment hanging_sheet(int rows, int columns, double width, double height, double top) {
+/// n x n particles, or about as many, in the plane z = 0, about x = 0, hanging down from `top`; the first row is held.
+cloth::Garment hanging_sheet(int n, double size, double top, Weave weave = Weave::threads) {
+  constexpr double k_irregular = 0.25; // of a side
+  const Vec3 corner(-0.5 * size, top, 0), across(size, 0, 0), down(0, -size, 0);
   cloth::GarmentDescription description;
   description.name = "sheet";
-  description.shape = cloth::GridShape{rows, columns, {-0.5 * width, top, 0}, {width, 0, 0}, {0, -height, 0}};
   description.fabric = stage_fabric();
-  description.attachments = {{"stage", 0, 0, 0, -1}};
+  cloth::Attachment upper{"stage", 0, 0, 0, -1};
+  if (weave == Weave::mesh) {
+    description.shape = mesh_sheet(n - 1, corner, across, down, k_irregular);
+    upper.above = top;
+  } else {
+    description.shape = cloth::GridShape{n, n, corner, across, down};
+  }
+  description.attachments = {upper};
   return cloth::build_garment(description);
 }
+
+const char* suffix_of(Weave weave) { return weave == Weave::mesh ? "-mesh" : ""; }
 
 struct TubeEnds {
   double top, top_radius, bottom, bottom_radius;
@@ -81,15 +93,17 @@ double soft_ramp(double t, double from, double to) {
 } // namespace
 
 StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed) {
-  constexpr double k_height = 0.6, k_top = 1.6;
+  constexpr double k_top = 1.6;
   // 0.3 m below the held row: at the end sqrt(0.3^2 + 0.25^2) = 0.39 m of the sheet lead to the leg, and what hangs
   // beyond keeps it there, so that the sheet need not slip off around its hem.
   static constexpr double k_leg_y = k_top - 0.3;
   constexpr double k_from = -0.3, k_to = 0.25, k_begin = 0.1;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = fmt::format("fast-leg {:g} m/s", leg.speed);
-  scene.garment = hanging_sheet(24, 24, 0.6, k_height, k_top);
+  scene.name = fmt::format("fast-leg{} {:g} m/s", suffix_of(leg.weave), leg.speed);
+  if (leg.radius != FastLeg().radius || leg.thickness != FastLeg().thickness)
+    scene.name += fmt::format(", {:g} mm into {:g} mm", 1e3 * leg.radius, 1e3 * leg.thickness);
+  scene.garment = hanging_sheet(24, 0.6, k_top, leg.weave);
   scene.garment.fabric.thickness = leg.thickness;
   scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
   const double end = k_begin + (k_to - k_from) / leg.speed;
@@ -113,9 +127,9 @@ StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed) {
   const double top = size + 1.0, from = -cells.radius - 0.05, to = 0.25 * size, end = k_begin + (to - from) / k_speed;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name =
-      fmt::format("coarse-cells {:g} {}", cells.cell / (2.0 * cells.radius), cells.along_warp ? "along" : "across");
-  scene.garment = hanging_sheet(k_particles, k_particles, size, size, top);
+  scene.name = fmt::format("coarse-cells{} {:g} {}", suffix_of(cells.weave), cells.cell / (2.0 * cells.radius),
+                           cells.along_warp ? "along" : "across");
+  scene.garment = hanging_sheet(k_particles, size, top, cells.weave);
   scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
   scene.seconds = end + 2.0;
   const double middle = top - 0.5 * size;
@@ -130,8 +144,9 @@ StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed) {
   return scene;
 }
 
-StabilityScene coarse_cells(double cells, bool along_warp, std::uint64_t seed) {
+StabilityScene coarse_cells(double cells, bool along_warp, std::uint64_t seed, Weave weave) {
   CoarseCells what;
+  what.weave = weave;
   what.cell = cells * 2.0 * what.radius;
   what.along_warp = along_warp;
   return coarse_cells(what, seed);
@@ -202,7 +217,7 @@ StabilityScene randomised(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   StabilityScene scene;
   scene.name = "randomised";
-  scene.garment = hanging_sheet(20, 20, k_size, k_size, k_top);
+  scene.garment = hanging_sheet(20, k_size, k_top);
   scene.start = scene.garment.rest_positions;
   const std::vector<std::uint8_t> pinned = cloth::pinned_flags(scene.garment);
   for (std::size_t i = 0; i < scene.start.size(); ++i) {
@@ -307,19 +322,38 @@ StabilityScene rotating_sphere(double friction, std::uint64_t seed) {
 const std::vector<StabilityFamily>& stability_families() {
   static const std::vector<StabilityFamily> families = [] {
     using Builder = std::function<StabilityScene(std::uint64_t)>;
-    std::vector<Builder> legs, cells;
-    for (const double speed : {1.0, 2.0, 5.0, 10.0, 20.0, 30.0})
-      legs.push_back([speed](std::uint64_t seed) { return fast_leg(speed, seed); });
-    for (const bool along : {false, true})
-      for (int k = 1; k <= 6; ++k)
-        cells.push_back([k, along](std::uint64_t seed) { return coarse_cells(k, along, seed); });
+    const auto legs = [](std::initializer_list<double> speeds, Weave weave) {
+      std::vector<Builder> builders;
+      for (const double speed : speeds)
+        builders.push_back([=](std::uint64_t seed) {
+          FastLeg leg{speed};
+          leg.weave = weave;
+          return fast_leg(leg, seed);
+        });
+      return builders;
+    };
+    const auto cells = [](Weave weave) {
+      std::vector<Builder> builders;
+      for (const bool along : {false, true})
+        for (int k = 1; k <= 6; ++k)
+          builders.push_back([=](std::uint64_t seed) { return coarse_cells(k, along, seed, weave); });
+      return builders;
+    };
+    const auto thin_leg = [](Weave weave) {
+      return [weave](std::uint64_t seed) { return fast_leg({5.0, 0.012, 0.008, weave}, seed); };
+    };
     const auto both = [](StabilityScene (*build)(bool, std::uint64_t)) {
       return std::vector<Builder>{[build](std::uint64_t seed) { return build(true, seed); },
                                   [build](std::uint64_t seed) { return build(false, seed); }};
     };
     return std::vector<StabilityFamily>{
-        {"fast-leg", "a leg goes through a hanging sheet at 1 to 30 m/s", legs},
-        {"coarse-cells", "cells 1 to 6 times as large as the limb that pushes into them", cells},
+        {"fast-leg", "a leg goes through a hanging sheet at 1 to 30 m/s", legs({1, 2, 5, 10, 20, 30}, Weave::threads)},
+        {"fast-leg-mesh", "the same of a sheet of irregular triangles", legs({1, 5, 10, 30}, Weave::mesh)},
+        {"thin-leg",
+         "a leg as thin as a hand goes through cloth of 8 mm, woven and of irregular triangles",
+         {thin_leg(Weave::threads), thin_leg(Weave::mesh)}},
+        {"coarse-cells", "cells 1 to 6 times as large as the limb that pushes into them", cells(Weave::threads)},
+        {"coarse-cells-mesh", "the same of a sheet of irregular triangles", cells(Weave::mesh)},
         {"start-inside", "an arm is in the wall of a tube at frame 0", both(start_inside)},
         {"teleport", "everything jumps by 5 m in one frame", both(teleport)},
         {"randomised", "particles begin anywhere in a cube", {randomised}},

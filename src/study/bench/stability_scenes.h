@@ -48,12 +48,17 @@ struct StabilityScene {
   int looks = 1;
 };
 
+/// What a hanging sheet is made of: threads, or irregular triangles as an imported garment is (mesh_sheet.h), about as
+/// many.
+enum class Weave { threads, mesh };
+
 /// A capsule goes through a sheet of 0.6 m that hangs from its upper row, along its normal, and stops where the sheet
 /// still reaches around it.
 struct FastLeg {
   double speed = 1.0;                           ///< m/s
   double radius = 0.06;                         ///< m
   double thickness = cloth::Fabric().thickness; ///< m, of the cloth
+  Weave weave = Weave::threads;
 };
 StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed);
 StabilityScene fast_leg(double speed, std::uint64_t seed);
@@ -64,10 +69,11 @@ struct CoarseCells {
   double cell = 0.06;   ///< m, a side
   double radius = 0.03; ///< m
   bool along_warp = false;
+  Weave weave = Weave::threads;
 };
 StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed);
 /// The same with a capsule of 3 cm, the cells `cells` times as large as its diameter.
-StabilityScene coarse_cells(double cells, bool along_warp, std::uint64_t seed);
+StabilityScene coarse_cells(double cells, bool along_warp, std::uint64_t seed, Weave weave = Weave::threads);
 
 /// An arm stands in the wall of a tube at frame 0 with its axis within the tube or outside it.
 struct StartInside {

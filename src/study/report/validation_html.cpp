@@ -197,6 +197,19 @@ std::string cloth_table(const Validation& v) {
   return html;
 }
 
+std::string crossings_table(const Validation& v, const Scene& scene) {
+  std::string html =
+      "<h2>What cloth goes through</h2>\n<p class=\"soft\">Curves along which its triangles cut others, by "
+      "exact tests; those that touch cloth between pinned particles are counted apart, as placed.</p>\n"
+      "<div class=\"scroll\"><table><thead><tr><th></th><th>frames with any</th><th>most in one</th>"
+      "<th>in frame</th><th>over all frames</th><th>placed</th></tr></thead><tbody>\n";
+  for (const auto& [what, tally] : crossing_lines(v, scene))
+    html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                        html_escaped(what), tally->frames, tally->worst,
+                        tally->worst_frame >= 0 ? std::to_string(tally->worst_frame) : "", tally->total, tally->placed);
+  return html + "</tbody></table></div>\n";
+}
+
 /// Runs of frames with the same proxies, so that a long motion stays readable.
 std::string collisions_html(const Validation& v) {
   std::string html =
@@ -263,7 +276,7 @@ std::string validation_html(const Validation& v, const LoadedScene& scene, const
   html += "<h2>Over the motion</h2>\n" + plots(v);
   html += maps_html(v, maps, no_maps);
   html += "<h2>All in numbers</h2>\n" + whole_table(v);
-  if (v.cloth) html += cloth_table(v);
+  if (v.cloth) html += cloth_table(v) + crossings_table(v, scene);
   html += "<h2>Proxies, the worst first</h2>\n<p class=\"soft\">mm. Under: of the skin that is nearest to the "
           "proxy.</p>\n" +
           table("proxy", v.proxies, true);

@@ -34,6 +34,31 @@ ordered_json json_of(const DepthCount& count) {
           {"max_mm", mm(count.deepest)}};
 }
 
+ordered_json json_of(const proxies::SurfaceCrossings& count) {
+  return {{"crossings", count.crossings}, {"placed", count.placed}};
+}
+
+ordered_json json_of(const CrossingTally& tally) {
+  return {{"frames", tally.frames},
+          {"worst", tally.worst},
+          {"worst_frame", tally.worst_frame >= 0 ? ordered_json(tally.worst_frame) : ordered_json(nullptr)},
+          {"total", tally.total},
+          {"placed", tally.placed}};
+}
+
+template <class Count>
+ordered_json crossings_json(const ClothCrossings<Count>& crossings, const std::vector<cloth::Garment>& garments) {
+  ordered_json json = {{"garments", ordered_json::array()}, {"each_other", json_of(crossings.each_other)}};
+  for (std::size_t g = 0; g < garments.size(); ++g) {
+    const auto& of = crossings.garments[g];
+    json["garments"].push_back({{"name", garments[g].name},
+                                {"body", json_of(of.body)},
+                                {"proxies", json_of(of.proxies)},
+                                {"itself", json_of(of.itself)}});
+  }
+  return json;
+}
+
 ordered_json json_of(const GroupErrors& group) {
   ordered_json json = {{"name", group.name}};
   if (!group.joint.empty()) json["joint"] = group.joint;
@@ -68,7 +93,7 @@ ordered_json census_json(const proxies::MeshCensus& census, double buried_share)
           {"buried_share", buried_share}};
 }
 
-ordered_json frame_json(const FrameReport& frame, const Validation& validation) {
+ordered_json frame_json(const FrameReport& frame, const Validation& validation, const Scene& scene) {
   ordered_json json = {
       {"frame", frame.frame},
       {"time", frame.time},
@@ -84,11 +109,13 @@ ordered_json frame_json(const FrameReport& frame, const Validation& validation) 
   };
   json["collisions"] = names(frame.collisions);
   json["wholly_inside"] = names(frame.inside);
-  if (frame.cloth)
+  if (frame.cloth) {
     json["cloth_in_body"] = {{"particles", json_of(frame.cloth->particles)},
                              {"edges", json_of(frame.cloth->edges)},
                              {"triangles", json_of(frame.cloth->triangles)},
                              {"triangles_28_max_mm", mm(frame.cloth->deepest_of_triangles)}};
+    json["crossings"] = crossings_json(frame.crossings, scene.garments);
+  }
   return json;
 }
 
@@ -141,7 +168,29 @@ std::string cloth_text(const Validation& validation) {
   return text;
 }
 
+std::string crossings_text(const Validation& validation, const Scene& scene) {
+  std::string text = fmt::format("{:<32} {:>7} {:>7} {:>7} {:>7} {:>7}\n", "cloth goes through (exact)", "frames",
+                                 "worst", "frame", "total", "placed");
+  for (const auto& [what, tally] : crossing_lines(validation, scene))
+    text += fmt::format("  {:<30} {:>7} {:>7} {:>7} {:>7} {:>7}\n", what, tally->frames, tally->worst,
+                        tally->worst_frame >= 0 ? std::to_string(tally->worst_frame) : "", tally->total, tally->placed);
+  return text;
+}
+
 } // namespace
+
+std::vector<CrossingLine> crossing_lines(const Validation& validation, const Scene& scene) {
+  std::vector<CrossingLine> lines;
+  const auto& crossings = validation.cloth->crossings;
+  for (std::size_t g = 0; g < scene.garments.size(); ++g) {
+    const std::string& name = scene.garments[g].name;
+    lines.push_back({name + ", the body", &crossings.garments[g].body});
+    lines.push_back({name + ", proxies", &crossings.garments[g].proxies});
+    lines.push_back({name + ", itself", &crossings.garments[g].itself});
+  }
+  if (scene.garments.size() > 1) lines.push_back({"garments, each other", &crossings.each_other});
+  return lines;
+}
 
 std::string Verdict::text() const {
   const char* what = judge == Judge::max ? "the bound" : judge == Judge::p99 ? "p99" : "p95";
@@ -220,6 +269,7 @@ ordered_json validation_json(const Validation& validation, const Scene& scene, c
     json["cloth_in_body"]["worst_frames"] = ordered_json::array();
     for (const int f : cloth.worst_frames) json["cloth_in_body"]["worst_frames"].push_back(validation.frames[f].frame);
   }
+  if (validation.cloth) json["crossings"] = crossings_json(validation.cloth->crossings, scene.garments);
   if (validation.cloth_failure) json["cloth_failure"] = *validation.cloth_failure;
   json["body"] = census_json(validation.census, validation.buried_share);
   json["skinning"] = validation.skinning;
@@ -227,7 +277,7 @@ ordered_json validation_json(const Validation& validation, const Scene& scene, c
   json["never_touching"] = never_touching(validation);
   json["seconds"] = validation.seconds;
   json["per_frame"] = ordered_json::array();
-  for (const FrameReport& frame : validation.frames) json["per_frame"].push_back(frame_json(frame, validation));
+  for (const FrameReport& frame : validation.frames) json["per_frame"].push_back(frame_json(frame, validation, scene));
   return json;
 }
 
@@ -274,7 +324,7 @@ std::string validation_text(const Validation& validation, const Scene& scene, co
       validation.proxies.size());
   const std::vector<std::string> never = never_touching(validation);
   text += never.empty() ? "\n" : fmt::format("; never: {}\n", fmt::join(never, ", "));
-  if (validation.cloth) text += cloth_text(validation);
+  if (validation.cloth) text += cloth_text(validation) + crossings_text(validation, scene);
   if (verdict) text += verdict->text() + "\n";
   return text;
 }

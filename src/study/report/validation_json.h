@@ -36,6 +36,16 @@ nlohmann::ordered_json validation_json(const Validation& validation, const Scene
 /// The same for a person: some lines, the worst first.
 std::string validation_text(const Validation& validation, const Scene& scene, const std::optional<Verdict>& verdict);
 
+/// What cloth goes through, as a line of a table: "skirt, the body".
+struct CrossingLine {
+  std::string what;
+  const CrossingTally* tally;
+};
+
+/// Of each garment body, proxies and itself; then garments with each other, where there are several. Of a validation
+/// with cloth, which must outlive it.
+std::vector<CrossingLine> crossing_lines(const Validation& validation, const Scene& scene);
+
 /// Proxies that meet the mesh in no frame, by name.
 std::vector<std::string> never_touching(const Validation& validation);
 

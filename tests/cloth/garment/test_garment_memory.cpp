@@ -3,7 +3,7 @@
 #include "cloth/recovery.h"
 #include "cloth/solver.h"
 #include "rig/error.h"
-#include "tests/support/mesh_sheet.h"
+#include "src/study/bench/mesh_sheet.h"
 #include "tests/support/peak_memory.h"
 
 #include <gmock/gmock.h>
@@ -38,7 +38,7 @@ TEST(GarmentMemory, ParticlesAreCountedBeforeTheyAreMade) {
   TubeShape slit = tube(9);
   slit.seam = 0.5;
   for (const GarmentDescription& description :
-       {of(grid(7)), of(tube(9)), of(slit), of(test::mesh_sheet(6, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}))})
+       {of(grid(7)), of(tube(9)), of(slit), of(app::mesh_sheet(6, {0, 0, 0}, {1, 0, 0}, {0, 0, 1}))})
     EXPECT_EQ(particles_of(description), build_garment(description).rest_positions.size());
   for (const int rings : {1, 2, 7, 40})
     for (const double hole : {0.0, 0.1, 0.3, 0.9}) {
@@ -71,7 +71,7 @@ TEST(GarmentMemory, WhatIsTooLargeIsRefusedWithItsPlaceAndSize) {
   EXPECT_LT(test::memory_now("VmRSS") - before, 16e6) << "nothing was allocated for it";
 
   const Variable small("TUTU_MEMORY_GIB", "0.001");
-  const MeshShape mesh = test::mesh_sheet(60, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+  const MeshShape mesh = app::mesh_sheet(60, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
   EXPECT_EQ(refusal_of(of(mesh)).place(), "/shape/mesh");
   EXPECT_THAT(refusal_of(of(grid(60))).found(), HasSubstr("3,600 particles"));
   EXPECT_THAT(refusal_of(of(grid(60))).expected(), HasSubstr("at most 0.001 GiB; TUTU_MEMORY_GIB=1 raises the limit"));
@@ -102,7 +102,7 @@ TEST(GarmentMemory, TheEstimateIsNotBelowTheTruth_slow) {
   };
   const SolverOptions precise{.double_precision = true}, springs{.solver = SolverKind::mass_spring};
   const SolverOptions apart{.self_collision = true, .double_precision = true};
-  const MeshShape mesh = test::mesh_sheet(400, {-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, 0.2);
+  const MeshShape mesh = app::mesh_sheet(400, {-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, 0.2);
   for (const int colliders : {1, 36})
     for (const Case& what : {Case{"grid", of(grid(400)), {}},
                              {"grid, double", of(grid(400)), precise},

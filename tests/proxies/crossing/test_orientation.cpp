@@ -87,6 +87,30 @@ TEST(Orientation, AgreesWithLongIntegersWhereNearlyDegenerate) {
   EXPECT_GT(misjudged, k_trials / 100) << "nor so that rounding errs";
 }
 
+TEST(Orientation, VolumeSignNeedsNoPointInCommon) {
+  std::mt19937_64 random(5);
+  int flat = 0;
+  constexpr int k_trials = 300000;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    // Three differences of small numbers far from 0: nearly always rounded when they are scaled so.
+    std::array<Point, 6> at;
+    std::array<Point, 3> difference;
+    for (int v = 0; v < 3; ++v)
+      for (int k = 0; k < 3; ++k) {
+        at[2 * v][k] = static_cast<std::int64_t>(random() % (std::int64_t{1} << 50));
+        difference[v][k] = static_cast<std::int64_t>(random() % 7) - 3;
+        at[2 * v + 1][k] = at[2 * v][k] + difference[v][k];
+      }
+    std::array<Vec3, 6> x;
+    for (int k = 0; k < 6; ++k) x[k] = scaled(at[k], {-50, -50, -50});
+    const Point none = {0, 0, 0};
+    const int expected = whole_orientation(none, difference[0], difference[1], difference[2]);
+    ASSERT_EQ(volume_sign(x[0], x[1], x[2], x[3], x[4], x[5]), expected) << "trial " << trial;
+    flat += expected == 0;
+  }
+  EXPECT_GT(flat, k_trials / 100);
+}
+
 TEST(Orientation, CrossSignAgreesWithLongIntegers) {
   std::mt19937_64 random(4);
   int flat = 0;

@@ -18,7 +18,7 @@ namespace {
 struct Mesh {
   std::vector<Vec3> positions;
   std::vector<rig::Triangle> triangles;
-  SurfaceView view() const { return {positions, triangles}; }
+  CrossingSurface view() const { return {positions, triangles}; }
 };
 
 /// A level sheet of n x n cells, 1 m wide about (0, 0, z), with diagonals either way and inner corners off the grid.
@@ -82,7 +82,7 @@ SurfaceCrossings tried_all(const Mesh& one, const Mesh& other, bool same) {
   collect(one, other, Beside::behind, false);
   if (!same) collect(other, one, Beside::before, true);
   std::vector<bool> seen(pairs.size());
-  SurfaceCrossings found{static_cast<int>(pairs.size()), 0};
+  SurfaceCrossings found{static_cast<int>(pairs.size()), 0, 0};
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (seen[k]) continue;
     ++found.crossings;
@@ -139,6 +139,62 @@ TEST(SurfaceCrossings, TouchingAgreesWithEveryPairTried) {
     }
     expect_counts(crossings_between(one.view(), other.view()), tried_all(one, other, false), trial);
   }
+}
+
+TEST(SurfaceCrossings, WhatHasMovedIsCountedAsIfItHadBegunThere) {
+  std::mt19937_64 random(14);
+  const Mesh rest = sheet(9, 0.0, 0.3);
+  const Capsule limb{{-0.1, 0, 0}, {0.1, 0, 0}, 0.08};
+  const Mesh body = solid(limb, 9);
+  CrossingSurface cloth = rest.view(), solid_surface = body.view();
+  int meet = 0;
+  constexpr int k_trials = 60;
+  for (int trial = 0; trial < k_trials; ++trial) {
+    Mesh moved = rest, other = body;
+    for (Vec3& p : moved.positions) p += test::random_point(random, 0.1);
+    if (trial % 4 == 0) moved.positions[trial] = Vec3::Constant(std::nan("")); // for this once
+    const Vec3 way = test::random_point(random, 0.5);
+    for (Vec3& p : other.positions) p += way;
+    cloth.move(moved.positions);
+    solid_surface.move(other.positions);
+    const SurfaceCrossings found = crossings_between(cloth, solid_surface);
+    meet += found.crossings > 0;
+    expect_counts(found, crossings_between(moved.view(), other.view()), trial);
+    expect_counts(crossings_within(cloth), crossings_within(moved.view()), trial);
+    if (trial % 4) expect_counts(found, tried_all(moved, other, false), trial);
+  }
+  EXPECT_GT(meet, k_trials * 3 / 10);
+  EXPECT_LT(meet, k_trials);
+}
+
+TEST(SurfaceCrossings, WhatWasPlacedSoIsCountedApart) {
+  // Two rods through a sheet whose half beyond x = 0 is placed; rods are placed as a whole.
+  const Mesh cloth = sheet(8, 0.0, 0.0);
+  std::vector<std::uint8_t> half;
+  for (const Vec3& p : cloth.positions) half.push_back(p.x() > -1e-9);
+  const auto through = [&](std::initializer_list<double> at) {
+    SurfaceCrossings found;
+    for (const double x : at) {
+      const Mesh rod = solid({{x, 0.03, -0.4}, {x, 0.03, 0.4}, 0.02});
+      const std::vector<std::uint8_t> all(rod.positions.size(), 1);
+      found.add(crossings_between(CrossingSurface(cloth.positions, cloth.triangles, {}, half),
+                                  CrossingSurface(rod.positions, rod.triangles, {}, all)));
+    }
+    return found;
+  };
+  EXPECT_EQ(through({-0.3}).crossings, 1);
+  EXPECT_EQ(through({-0.3}).placed, 0);
+  EXPECT_EQ(through({0.3}).crossings, 0);
+  EXPECT_EQ(through({0.3}).placed, 1);
+  EXPECT_EQ(through({0.0}).placed, 1) << "a curve that goes on in placed cloth";
+  EXPECT_EQ(through({-0.3, 0.0, 0.3}).crossings, 1);
+  // Free cloth through placed cloth is the work of what moves.
+  const Mesh other = {{{0.3, 0.01, -0.1}, {0.3, 0.02, 0.1}, {0.33, 0.015, 0.1}}, {{0, 1, 2}}};
+  const CrossingSurface placed(cloth.positions, cloth.triangles, {}, half);
+  EXPECT_EQ(crossings_between(placed, other.view()).crossings, 1);
+  EXPECT_EQ(crossings_between(other.view(), placed).crossings, 1);
+  // Without flags nothing is placed.
+  EXPECT_EQ(crossings_between(cloth.view(), solid({{0.3, 0, -0.4}, {0.3, 0, 0.4}, 0.02}).view()).placed, 0);
 }
 
 TEST(SurfaceCrossings, AFingerThroughASheetIsOneHoweverFineTheSheet) {
@@ -228,7 +284,7 @@ TEST(SurfaceCrossings, ASheetThroughItselfIsSeenAndASeamIsNot) {
   shut.positions[40] = shut.positions[0];
   shut.positions[41] = shut.positions[1];
   const std::vector<std::pair<int, int>> seam = {{0, 40}, {1, 41}};
-  EXPECT_EQ(crossings_within(shut.view(), seam).pairs, 0);
+  EXPECT_EQ(crossings_within(CrossingSurface(shut.positions, shut.triangles, seam)).pairs, 0);
 }
 
 TEST(SurfaceCrossings, WhatIsNoPlaceIsNotThere) {

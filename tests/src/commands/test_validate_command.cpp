@@ -130,6 +130,33 @@ TEST_F(ValidateCommand, TheJsonHasWhatItPromises) {
   EXPECT_FALSE(v.contains("cloth_in_body"));
 }
 
+TEST_F(ValidateCommand, ABodyThatStandsInClothIsCountedThoughTheProxiesKnowNothing) {
+  // Two sheets hang through each other and through the body; the proxy stands beside.
+  const auto hung = [&](const std::string& name, const std::string& from_and_across) {
+    return file(name + ".json", R"({"name": ")" + name +
+                                    R"(", "shape": {"grid": {"rows": 9, "columns": 9, "down": [0, -0.8, 0], )" +
+                                    from_and_across + R"(}}, "attachments": [{"joint": "Hips", "rows": 0}]})");
+  };
+  hung("plain", R"("corner": [-0.3, 1.0, 0], "across": [0.6, 0, 0])");
+  hung("slant", R"("corner": [-0.3, 1.0, -0.05], "across": [0.6, 0, 0.1])");
+  const std::string s =
+      scene({{{2, 0, 0}, {2, 1, 0}, 0.1}}, "still.json", "body.dae", R"(, "garments": ["plain.json", "slant.json"])");
+  const std::string html = (folder_ / "v.html").string();
+  const json v = figures_of({s, "--html", html});
+  const json& crossings = v["crossings"];
+  ASSERT_EQ(crossings["garments"].size(), 2u);
+  for (const json& garment : crossings["garments"]) {
+    EXPECT_EQ(garment["body"]["frames"], v["frames"]) << garment;
+    EXPECT_GE(garment["body"]["worst"], 1) << garment;
+    EXPECT_EQ(garment["proxies"]["total"], 0) << garment;
+  }
+  EXPECT_GE(crossings["each_other"]["worst"], 1);
+  EXPECT_EQ(v["per_frame"][0]["crossings"]["garments"][0]["name"], "plain");
+  EXPECT_GE(v["per_frame"][0]["crossings"]["garments"][0]["body"]["crossings"], 1);
+  EXPECT_THAT(read_file(html), HasSubstr("plain, the body"));
+  EXPECT_FALSE(figures_of({s, "--no-cloth"}).contains("crossings"));
+}
+
 TEST_F(ValidateCommand, ThreadsGiveTheSameFigures) {
   const Vec3 move(0.01, 0, 0.01);
   const std::string s = scene({{k_trunk.a + move, k_trunk.b - move, k_trunk.radius}}, "turn.json");
@@ -219,6 +246,7 @@ TEST_F(ValidateCommand, TheDancersClothIsMeasured_slow) {
   for (const char* key : {"share", "max_mm", "p99_mm", "particles", "edges", "triangles"})
     EXPECT_TRUE(cloth.contains(key)) << key;
   EXPECT_EQ(cloth["particles"]["asked"], 6 * 1080);
+  EXPECT_EQ(v["crossings"]["garments"].size(), 2u);
   EXPECT_GT(v["in_reach"]["skin_share"], 0.5);
   EXPECT_LT(v["in_reach"]["skin_share"], 1.0);
   EXPECT_LE(v["in_reach"]["under_mm"]["bound"], v["under_mm"]["bound"]);

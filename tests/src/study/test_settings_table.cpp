@@ -7,7 +7,7 @@
 #include "src/scene/scene_override.h"
 #include "src/study/chart/row.h"
 #include "src/study/chart/settings_grid.h"
-#include "tests/support/mesh_sheet.h"
+#include "src/study/bench/mesh_sheet.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tests/support/small_scene.h"
@@ -126,7 +126,7 @@ cloth::Garment woven() {
 }
 cloth::Garment meshed() {
   cloth::GarmentDescription description;
-  description.shape = test::mesh_sheet(5, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
+  description.shape = app::mesh_sheet(5, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
   return cloth::build_garment(description);
 }
 

@@ -1,7 +1,6 @@
 // What must never happen to cloth, and what it must come back from. Ten jittered starts of each scene, default
 // settings.
 #include "src/study/bench/stability_run.h"
-#include "tests/support/mesh_sheet.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -24,29 +23,6 @@ void expect_all_pass(const std::function<StabilityScene(std::uint64_t)>& build) 
                                 << fmt::format("{}", fmt::join(broken, "; "));
   }
   EXPECT_EQ(passed, k_stability_runs) << name;
-}
-
-/// The scene with its sheet of other triangles, held along the same border.
-StabilityScene of_mesh(StabilityScene scene, const cloth::MeshShape& mesh) {
-  cloth::GarmentDescription description;
-  description.name = "mesh";
-  description.shape = mesh;
-  description.fabric = scene.garment.fabric;
-  double top = -1e9;
-  for (const Vec3& p : mesh.positions) top = std::max(top, p.y());
-  cloth::Attachment upper;
-  upper.joint = "stage";
-  upper.above = top - 1e-6;
-  description.attachments = {upper};
-  scene.garment = cloth::build_garment(description);
-  scene.start = scene.garment.rest_positions;
-  std::vector<Vec3> held;
-  for (const cloth::Pin& pin : scene.garment.pins) held.push_back(scene.garment.rest_positions[pin.particle]);
-  scene.pose = [grid = scene.pose, held](double t, std::vector<proxies::Capsule>& capsules, std::vector<Vec3>& pins) {
-    grid(t, capsules, pins);
-    pins = held;
-  };
-  return scene;
 }
 
 class FastLeg : public ::testing::TestWithParam<double> {};
@@ -144,41 +120,50 @@ TEST(Stability, SweptContactsStopAFastLegAtAFixedCost_slow) {
   }
 }
 
-TEST(Stability, TheJudgeSeesALegThatPassesThroughAMesh) {
-  StabilityScene scene =
-      of_mesh(fast_leg(2.0, 1), test::mesh_sheet(16, {-0.3, 1.6, 0}, {0.6, 0, 0}, {0, -0.6, 0}, 0.2));
-  scene.pose = [thick = scene.pose](double t, std::vector<proxies::Capsule>& capsules, std::vector<Vec3>& pins) {
-    thick(t, capsules, pins);
-    capsules[0].radius = 1e-6;
-  };
-  scene.seconds = 0.4;
+/// Nothing that keeps a limb from passing but particles.
+RunSettings unguarded() {
   RunSettings setup;
+  setup.features = cloth::ContactFeatures::particles;
   setup.swept = false;
   setup.adaptive_substeps = false;
-  setup.features = cloth::ContactFeatures::particles;
-  const StabilityRun run = run_stability(scene, setup);
+  return setup;
+}
+
+class OfEither : public ::testing::TestWithParam<Weave> {};
+INSTANTIATE_TEST_SUITE_P(Stability, OfEither, ::testing::Values(Weave::threads, Weave::mesh));
+
+TEST_P(OfEither, ALegThatPassesIsSeen) {
+  // A leg as thin as nothing goes between all particles.
+  StabilityScene scene = fast_leg({2.0, 1e-6, cloth::Fabric().thickness, GetParam()}, 1);
+  scene.seconds = 0.5;
+  scene.looks = 1;
+  const StabilityRun run = run_stability(scene, unguarded());
   EXPECT_TRUE(run.failure.empty()) << run.failure;
-  EXPECT_GE(run.crossings, 14);
+  EXPECT_GE(run.crossings, 22) << "each thread, or line as dense";
+  EXPECT_LE(run.crossings, 25);
   EXPECT_FALSE(broken_limits(scene, run).empty());
 }
 
-TEST(Stability, TheJudgeSeesALegThatPasses) {
-  // A leg as thin as nothing goes between all particles.
-  StabilityScene scene = fast_leg(2.0, 1);
-  scene.pose = [thick = scene.pose](double t, std::vector<proxies::Capsule>& capsules, std::vector<Vec3>& pins) {
-    thick(t, capsules, pins);
-    capsules[0].radius = 1e-6;
+TEST_P(OfEither, ALegThatStandsInClothIsSeenInEveryFrame) {
+  StabilityScene scene = fast_leg({1.0, 0.02, cloth::Fabric().thickness, GetParam()}, 1);
+  scene.pose = [hang = scene.pose](double t, std::vector<proxies::Capsule>& capsules, std::vector<Vec3>& pins) {
+    hang(t, capsules, pins);
+    capsules = {{{0.03, 1.3, -0.4}, {0.03, 1.3, 0.4}, 0.02}};
   };
-  RunSettings setup;
-  setup.features = cloth::ContactFeatures::particles;
-  setup.swept = false;
-  setup.adaptive_substeps = false;
-  StabilityRun run = run_stability(scene, setup);
-  EXPECT_EQ(run.crossings, scene.garment.columns);
-  EXPECT_FALSE(broken_limits(scene, run).empty());
-  run = {};
+  scene.seconds = 0.2;
+  const StabilityRun run = run_stability(scene, unguarded(), SurfaceLooks::every_frame);
+  ASSERT_EQ(run.frames, 12);
+  EXPECT_EQ(run.limbs.frames, 12);
+  EXPECT_GE(run.limbs.worst, 1);
+  EXPECT_GE(run.limbs.total, 12);
+  EXPECT_GE(run.pierced, 12);
+  EXPECT_EQ(run_stability(scene, unguarded()).limbs.frames, 0) << "not looked at unless asked";
+}
+
+TEST(Stability, TheJudgeBreaksOnWhatIsNoNumber) {
+  StabilityRun run;
   run.depth = std::nan("");
-  EXPECT_EQ(broken_limits(scene, run).size(), 1u);
+  EXPECT_EQ(broken_limits(fast_leg(2.0, 1), run).size(), 1u);
 }
 
 } // namespace

@@ -6,14 +6,15 @@
 #include <cmath>
 #include <random>
 
-namespace tutu::test {
+namespace tutu::app {
 
 /// A rectangle from `corner` along `across` and `down` (whole edges), about `cells` triangles' sides wide. Inner
 /// corners are moved by up to `jitter` of a side, seeded. Rows of particles run along `across`.
 inline cloth::MeshShape mesh_sheet(int cells, const Vec3& corner, const Vec3& across, const Vec3& down,
                                    double jitter = 0.0) {
-  std::mt19937 random(1);
-  std::uniform_real_distribution<double> shift(-jitter, jitter);
+  std::mt19937_64 random(1);
+  // Not std::uniform_real_distribution, whose numbers are each library's own.
+  const auto shift = [&] { return jitter * (2.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1.0); };
   const double side = 1.0 / cells; // of the width
   const int rows = std::max(1, static_cast<int>(std::lround(down.norm() / (across.norm() * side * std::sqrt(0.75)))));
   cloth::MeshShape mesh;
@@ -25,8 +26,8 @@ inline cloth::MeshShape mesh_sheet(int cells, const Vec3& corner, const Vec3& ac
       double u = row % 2 == 0 ? k * side : std::clamp((k - 0.5) * side, 0.0, 1.0);
       double v = static_cast<double>(row) / rows;
       if (row > 0 && row < rows && k > 0 && k + 1 < count) {
-        u += shift(random) * side;
-        v += shift(random) / rows;
+        u += shift() * side;
+        v += shift() / rows;
       }
       lines[row].push_back(static_cast<std::uint32_t>(mesh.positions.size()));
       mesh.positions.push_back(corner + u * across + v * down);
@@ -49,4 +50,4 @@ inline cloth::MeshShape mesh_sheet(int cells, const Vec3& corner, const Vec3& ac
   return mesh;
 }
 
-} // namespace tutu::test
+} // namespace tutu::app
