@@ -12,9 +12,11 @@ namespace tutu::app {
 /// corners are moved by up to `jitter` of a side, seeded. Rows of particles run along `across`.
 inline cloth::MeshShape mesh_sheet(int cells, const Vec3& corner, const Vec3& across, const Vec3& down,
                                    double jitter = 0.0) {
-  std::mt19937_64 random(1);
-  // Not std::uniform_real_distribution, whose numbers are each library's own.
-  const auto shift = [&] { return jitter * (2.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1.0); };
+  std::mt19937 random(1);
+  const auto shift = [&] { // not std::uniform_real_distribution, whose numbers are each library's own
+    const auto low = static_cast<double>(random()), high = static_cast<double>(random());
+    return (low + high * 0x1p32) * 0x1p-64 * (2.0 * jitter) - jitter;
+  };
   const double side = 1.0 / cells; // of the width
   const int rows = std::max(1, static_cast<int>(std::lround(down.norm() / (across.norm() * side * std::sqrt(0.75)))));
   cloth::MeshShape mesh;

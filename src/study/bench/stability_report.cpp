@@ -49,8 +49,8 @@ struct Worst {
       (run.*tally).total += (other.*tally).total;
     }
     run.recoveries += other.recoveries;
-    for (double StabilityRun::*figure :
-         {&StabilityRun::stretch, &StabilityRun::worst_stretch, &StabilityRun::depth, &StabilityRun::speed})
+    for (double StabilityRun::*figure : {&StabilityRun::stretch, &StabilityRun::worst_stretch, &StabilityRun::depth,
+                                         &StabilityRun::deepest, &StabilityRun::speed})
       run.*figure = std::max(run.*figure, other.*figure);
     run.most_substeps = std::max(run.most_substeps, other.most_substeps);
     ms.push_back(other.ms);
@@ -65,10 +65,13 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
                   "mm   {:>5.2f} m/s   {:>3} recoveries   {:>3} substeps at most   {:.2f} ms\n",
                   name, worst.passed, worst.runs, run.crossings, run.pierced, 100.0 * run.stretch, 1e3 * run.depth,
                   run.speed, run.recoveries, run.most_substeps, ms);
-  for (const auto& [what, tally] : {std::pair("limbs", &run.limbs), std::pair("itself", &run.itself)})
-    if (tally->frames > 0)
-      report.text += fmt::format("    stands in {} in {} frames, {} places in one at worst, {} over all frames\n", what,
-                                 tally->frames, tally->worst, tally->total);
+  const auto standing = [](const CrossingTally& tally) {
+    return fmt::format("{} frames, {} places in one at worst, {} in all", tally.frames, tally.worst, tally.total);
+  };
+  if (run.limbs.frames > 0)
+    report.text +=
+        fmt::format("    stands in limbs in {}; {:.2f} mm deep at most\n", standing(run.limbs), 1e3 * run.deepest);
+  if (run.itself.frames > 0) report.text += fmt::format("    stands in itself in {}\n", standing(run.itself));
   for (const std::string& why : worst.broken) report.text += fmt::format("    {}\n", why);
   report.json["variants"].push_back(
       {{"name", name},
@@ -79,6 +82,7 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
        {"through", {{"limbs", json_of(run.limbs)}, {"itself", json_of(run.itself)}}},
        {"stretch_pct", {{"p99", 100.0 * run.stretch}, {"max", 100.0 * run.worst_stretch}}},
        {"pen_mm", {{"max", 1e3 * run.depth}}},
+       {"deepest_mm", 1e3 * run.deepest},
        {"speed", run.speed},
        {"recoveries", run.recoveries},
        {"most_substeps", run.most_substeps},

@@ -3,6 +3,7 @@
 #include "cloth/adaptive_substeps.h"
 #include "cloth/metrics.h"
 #include "cloth/recovery.h"
+#include "src/measure/frame_metrics.h"
 
 #include <algorithm>
 #include <chrono>
@@ -104,6 +105,8 @@ StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup
       surface.move(solver.particles().positions);
       run.limbs.add(frame, surface.with(capsules));
       run.itself.add(frame, surface.with_itself());
+      run.deepest =
+          std::max(run.deepest, deepest_surface_sample(scene.garment, solver.particles().positions, capsules));
     }
     for (const double s : lengthening_of(scene.garment, solver.particles()))
       run.worst_stretch = std::max(run.worst_stretch, s);

@@ -23,6 +23,7 @@ struct StabilityRun {
   double stretch = 0.0;       ///< p99 of the lengthening of grid edges, at the end
   double worst_stretch = 0.0; ///< of any edge in any frame
   double depth = 0.0;         ///< m, of the deepest particle, at the end
+  double deepest = 0.0;       ///< m, of any surface sample (frame_metrics.h) in the frames looked at
   double speed = 0.0;         ///< m/s, of the fastest particle, at the end
   double turn_rate = 0.0;     ///< rad/s about the vertical axis through the origin, at the end, of the cloth as a whole
   int recoveries = 0;
@@ -31,7 +32,7 @@ struct StabilityRun {
   cloth::Particles end;
 };
 
-/// After which frames surfaces are held against each other: that takes several times as long as a frame.
+/// After which frames surfaces are looked at: that takes several times as long as a frame.
 enum class SurfaceLooks { never, every_frame };
 
 StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup,

@@ -40,7 +40,7 @@ TEST(BenchStability, ASceneOfStabilityWritesWhatPassed) {
   EXPECT_EQ(variant.at("crossings"), 0);
   for (const char* pointer :
        {"/through/limbs/frames", "/through/limbs/worst", "/through/itself/total", "/stretch_pct/p99",
-        "/stretch_pct/max", "/pen_mm/max", "/speed", "/recoveries", "/most_substeps", "/ms/median"})
+        "/stretch_pct/max", "/pen_mm/max", "/deepest_mm", "/speed", "/recoveries", "/most_substeps", "/ms/median"})
     EXPECT_TRUE(variant.at(nlohmann::json::json_pointer(pointer)).is_number()) << pointer;
   EXPECT_EQ(variant.at("state_hash").get<std::string>().size(), 16u);
 }

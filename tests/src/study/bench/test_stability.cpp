@@ -156,6 +156,7 @@ TEST_P(OfEither, ALegThatStandsInClothIsSeenInEveryFrame) {
   EXPECT_EQ(run.limbs.frames, 12);
   EXPECT_GE(run.limbs.worst, 1);
   EXPECT_GE(run.limbs.total, 12);
+  EXPECT_GT(run.deepest, 0.01) << "a leg of 20 mm";
   EXPECT_GE(run.pierced, 12);
   EXPECT_EQ(run_stability(scene, unguarded()).limbs.frames, 0) << "not looked at unless asked";
 }
