@@ -25,6 +25,13 @@ json head_of(const std::string& name, const RunSettings& setup) {
           {"threads", 1}};
 }
 
+/// Of a variant's runs the longest thread and the deepest point that any ended with.
+void worse_of(GarmentEnd& worst, const GarmentEnd& other) {
+  worst.garment = other.garment;
+  if (other.longest.longer > worst.longest.longer) worst.longest = other.longest;
+  if (!worst.in_proxies || other.in_proxies->depth > worst.in_proxies->depth) worst.in_proxies = other.in_proxies;
+}
+
 /// The worst of a variant's runs.
 struct Worst {
   StabilityRun run;
@@ -42,9 +49,10 @@ struct Worst {
     run.at_end.colliders += other.at_end.colliders;
     run.at_end.cloth += other.at_end.cloth;
     run.recoveries += other.recoveries;
-    for (double StabilityRun::*figure :
-         {&StabilityRun::stretch, &StabilityRun::worst_stretch, &StabilityRun::depth, &StabilityRun::speed})
+    for (double StabilityRun::*figure : {&StabilityRun::longer_p99, &StabilityRun::longer_max, &StabilityRun::depth,
+                                         &StabilityRun::surface, &StabilityRun::speed})
       run.*figure = std::max(run.*figure, other.*figure);
+    worse_of(run.left, other.left);
     run.most_substeps = std::max(run.most_substeps, other.most_substeps);
     ms.push_back(other.ms);
   }
@@ -54,10 +62,10 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
   const StabilityRun& run = worst.run;
   const double ms = cloth::percentile(worst.ms, 0.5);
   report.text +=
-      fmt::format("{:<30}{:>3} of {} pass{:>7} crossings{:>7} pierced   stretch p99 {:>6.2f} %   depth {:>5.2f} "
-                  "mm   {:>5.2f} m/s   {:>3} recoveries   {:>3} substeps at most   {:.2f} ms\n",
-                  name, worst.passed, worst.runs, run.crossings, run.pierced, 100.0 * run.stretch, 1e3 * run.depth,
-                  run.speed, run.recoveries, run.most_substeps, ms);
+      fmt::format("{:<30}{:>3} of {} pass{:>7} crossings{:>7} pierced   longer p99 {:>6.2f} %   depth {:>5.2f} "
+                  "mm, surface {:>5.2f} mm   {:>5.2f} m/s   {:>3} recoveries   {:>3} substeps at most   {:.2f} ms\n",
+                  name, worst.passed, worst.runs, run.crossings, run.pierced, 100.0 * run.longer_p99, 1e3 * run.depth,
+                  1e3 * run.surface, run.speed, run.recoveries, run.most_substeps, ms);
   for (const std::string& why : worst.broken) report.text += fmt::format("    {}\n", why);
   report.json["variants"].push_back(
       {{"name", name},
@@ -66,8 +74,9 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
        {"crossings", run.crossings},
        {"pierced", run.pierced},
        {"through_at_end", {{"colliders", run.at_end.colliders}, {"cloth", run.at_end.cloth}}},
-       {"stretch_pct", {{"p99", 100.0 * run.stretch}, {"max", 100.0 * run.worst_stretch}}},
+       {"longer_pct", {{"p99", 100.0 * run.longer_p99}, {"max", 100.0 * run.longer_max}}},
        {"pen_mm", {{"max", 1e3 * run.depth}}},
+       {"surface_mm", {{"max", 1e3 * run.surface}}},
        {"speed", run.speed},
        {"recoveries", run.recoveries},
        {"most_substeps", run.most_substeps},
@@ -80,6 +89,8 @@ StabilityReport report_scenes(const StabilityFamily& family, const RunSettings& 
                               const std::function<bool()>& go_on) {
   StabilityReport report;
   report.json = head_of(family.name, setup);
+  report.json["uneven_mm"] = 1e3 * k_stability_uneven;
+  report.json["seeds"] = {{"first", 1}, {"last", runs}};
   report.text = fmt::format("{}: {}\n", family.name, family.what);
   report.passed = true;
   std::uint64_t all = cloth::state_hash({});
@@ -96,8 +107,11 @@ StabilityReport report_scenes(const StabilityFamily& family, const RunSettings& 
       all = cloth::state_hash(run.end, all);
     }
     report.passed = report.passed && worst.passed == runs;
-    if (worst.runs > 0) tell(name, worst, hash, report);
+    if (worst.runs == 0) continue;
+    tell(name, worst, hash, report);
+    report.end.garments.push_back(worst.run.left);
   }
+  report.json["end"] = report.end.json();
   report.json["state_hash"] = hex(all);
   return report;
 }
