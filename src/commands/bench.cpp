@@ -6,6 +6,7 @@
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/measure/frame_metrics.h"
+#include "src/measure/uneven_json.h"
 #include "src/options/setting_options.h"
 #include "src/run/session.h"
 #include "src/study/bench/dancer_skirt.h"
@@ -103,8 +104,6 @@ json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics&
                  {"substeps", scene.setup().substeps},
                  {"backend", backend_of(scene)},
                  {"still", options.still},
-                 {"uneven_mm", scene.setup().uneven_mm},
-                 {"seed", scene.setup().uneven_mm > 0.0 ? json(scene.setup().seed) : json(nullptr)},
                  {"offset_mm", 1000.0 * scene.skirt().fabric.contact_offset()},
                  {"friction", scene.setup().solver == cloth::SolverKind::xpbd ? k_dancer_friction : 0.0},
                  {"threads", 1},
@@ -127,6 +126,7 @@ json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics&
                  {"diverged", run.failure.has_value()},
                  {"end", run.end.json()},
                  {"state_hash", fmt::format("{:016x}", cloth::state_hash(scene.particles()))}};
+  result.update(uneven_json(scene.setup()));
   if (run.failure) result["failure"] = run.failure->message();
   return result;
 }

@@ -8,6 +8,7 @@
 #include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
+#include "src/measure/uneven_json.h"
 #include "src/options/chart_options.h"
 #include "src/options/scene_options.h"
 #include "src/run/drape.h"
@@ -175,6 +176,7 @@ int run(Options options) {
   if (!options.json.empty()) {
     nlohmann::ordered_json json = plan_json(scene.name(), record, goal, bench.limits(), options.ms);
     json["own"] = errors_json(bench.own());
+    json.update(uneven_json(scene.settings));
     json["out"] = options.out;
     write_file(options.json, json_text(json));
   }

@@ -1,6 +1,7 @@
 #include "src/measure/run_stats.h"
 
 #include "rig/error.h"
+#include "src/measure/uneven_json.h"
 
 #include <algorithm>
 #include <fmt/format.h>
@@ -67,30 +68,27 @@ nlohmann::json RunStats::json(const Session& session, const RunEnd& end) const {
     ms[stage.name] = {{"median", stage.ms.percentile(0.5)}, {"p99", stage.ms.percentile(0.99)}};
   const char* what = session.collides_with_body() ? "body" : "proxies";
   const cloth::ThreadStrains strains = strains_.strains();
-  const double uneven = scene_->settings.uneven_mm;
-  nlohmann::json result = {
-      {"scene", scene_->name()},
-      {"frames", frames_},
-      {"uneven_mm", uneven},
-      {"seed", uneven > 0.0 ? nlohmann::json(scene_->settings.seed) : nullptr}, // else nothing in a run is random
-      {"solver", name_of(scene_->settings.solver)},
-      {"substeps", substeps_json(session)},
-      {"backend", session.backend()},
-      {"threads", session.threads()},
-      {"ms_per_frame", ms},
-      {"penetration_mm", {{what, json_of(particles_mm_.spread())}}},
-      {"surface_mm", {{what, json_of(surface_mm_.spread())}}},
-      {"share_inside",
-       static_cast<double>(inside_) / static_cast<double>(std::max<std::int64_t>(1, particles_mm_.count()))},
-      {"longer_pct", percent_of(strains.longer)},
-      {"shorter_pct", percent_of(strains.shorter)},
-      {"held_longer_pct", percent_of(strains.held_longer)},
-      {"jitter", jitters_.spread().mean},
-      {"diverged", session.failure().has_value()},
-      {"recoveries", session.troubles().recoveries},
-      {"teleports", session.troubles().teleports},
-      {"end", end.json()},
-      {"state_hash", fmt::format("{:016x}", session.state_hash())}};
+  nlohmann::json result = {{"scene", scene_->name()},
+                           {"frames", frames_},
+                           {"solver", name_of(scene_->settings.solver)},
+                           {"substeps", substeps_json(session)},
+                           {"backend", session.backend()},
+                           {"threads", session.threads()},
+                           {"ms_per_frame", ms},
+                           {"penetration_mm", {{what, json_of(particles_mm_.spread())}}},
+                           {"surface_mm", {{what, json_of(surface_mm_.spread())}}},
+                           {"share_inside", static_cast<double>(inside_) /
+                                                static_cast<double>(std::max<std::int64_t>(1, particles_mm_.count()))},
+                           {"longer_pct", percent_of(strains.longer)},
+                           {"shorter_pct", percent_of(strains.shorter)},
+                           {"held_longer_pct", percent_of(strains.held_longer)},
+                           {"jitter", jitters_.spread().mean},
+                           {"diverged", session.failure().has_value()},
+                           {"recoveries", session.troubles().recoveries},
+                           {"teleports", session.troubles().teleports},
+                           {"end", end.json()},
+                           {"state_hash", fmt::format("{:016x}", session.state_hash())}};
+  result.update(uneven_json(scene_->settings));
   for (const RunRecovery& recovery : session.troubles().first_recoveries)
     result["first_recoveries"].push_back(recovery.message());
   if (session.failure()) result["failure"] = session.failure()->message();
@@ -127,7 +125,7 @@ std::string RunStats::text(const Session& session) const {
                   session.collides_with_body() ? "the body" : "proxies", particles.max, particles.mean, surface.max,
                   surface.p99, 100 * strains.longer.max, 100 * strains.longer.p99, 100 * strains.longer.mean,
                   100 * strains.shorter.max, 100 * strains.shorter.p99, 100 * strains.shorter.mean);
-  if (strains.held_longer.max > 0.0)
+  if (strains.held_longer.max > 5e-4) // shown as more than 0.0
     text += fmt::format("; held ones longer by {:.1f} at most", 100 * strains.held_longer.max);
   text += fmt::format("\njitter: {:.2f} m/s2\n", jitters_.spread().mean);
   if (scene_->settings.uneven_mm > 0.0)

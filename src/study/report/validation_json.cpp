@@ -1,6 +1,7 @@
 #include "src/study/report/validation_json.h"
 
 #include "rig/body_regions.h"
+#include "src/measure/uneven_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -218,6 +219,7 @@ ordered_json validation_json(const Validation& validation, const Scene& scene, c
                              {"triangles", json_of(cloth.triangles)},
                              {"surface_max_mm", mm(cloth.surface)},
                              {"end", cloth.end.json()}};
+    json["cloth_in_body"].update(uneven_json(scene.settings));
     json["cloth_in_body"]["worst_frames"] = ordered_json::array();
     for (const int f : cloth.worst_frames) json["cloth_in_body"]["worst_frames"].push_back(validation.frames[f].frame);
   }

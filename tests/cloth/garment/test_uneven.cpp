@@ -59,7 +59,7 @@ std::pair<double, double> buckled(double uneven, std::uint64_t seed, const Solve
   std::vector<Vec3> before, after;
   for (const Pin& pin : garment.pins) after.push_back(garment.rest_positions[pin.particle]);
   FrameInput input;
-  input.substeps = 12;
+  input.substeps = options.solver == SolverKind::xpbd ? 12 : 60;
   for (int frame = 0; frame < 60; ++frame) {
     before = after;
     if (frame < 30)

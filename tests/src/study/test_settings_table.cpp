@@ -92,11 +92,13 @@ TEST(SettingsTable, SchemasSayTheSame) {
   std::size_t in_scene = 0;
   for (const SettingRow& row : settings_table()) {
     json expected = schema_of(row);
-    if (row.repeats) EXPECT_FALSE(grid.contains(row.name)) << "starts are the chart's own";
-    else
+    if (row.repeats) {
+      EXPECT_FALSE(grid.contains(row.name)) << "starts are the chart's own";
+    } else {
       EXPECT_EQ(grid.at(row.name),
                 (json{{"oneOf", {expected, {{"type", "array"}, {"minItems", 1}, {"items", expected}}}}}))
           << row.name;
+    }
     const std::string standard = row.is_switch() ? (row.standard() ? "true" : "false") : text_of(row, row.standard());
     expected["description"] = row.words + (" (default " + standard + ")");
     EXPECT_EQ(scene.at(row.section).at("properties").at(row.key), expected) << row.name;

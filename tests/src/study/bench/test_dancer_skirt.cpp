@@ -197,7 +197,9 @@ TEST(DancerSkirtScene, StartsUnevenUnlessAskedNotTo) {
   double most = 0.0;
   for (int i = 0; i < 30 * 30; ++i) {
     const Vec3 off = uneven.particles().positions[i] - rest[i];
-    if (i < 30) EXPECT_EQ(off, Vec3::Zero()) << "pinned";
+    if (i < 30) {
+      EXPECT_EQ(off, Vec3::Zero()) << "pinned";
+    }
     most = std::max(most, off.cwiseAbs().maxCoeff());
   }
   EXPECT_LE(most, 1e-4 + 1e-6) << "kernels keep floats";
@@ -284,10 +286,10 @@ TEST(BenchMetrics, AgreeWithBruteForce) {
     int samples = 0;
     for (int i = 0; i <= 6; ++i)
       for (int j = 0; j <= 6 - i; ++j, ++samples) {
-        double free = 0.0; // share of corners below the first row
+        double solved = 0.0; // share of corners below the first row
         for (const auto& [corner, part] : {std::pair(t[0], 6 - i - j), std::pair(t[1], i), std::pair(t[2], j)})
-          if (corner >= static_cast<std::uint32_t>(n)) free += part;
-        if (free > 0.0) surf = std::max(surf, depth(a + i / 6.0 * (b - a) + j / 6.0 * (c - a), posed));
+          if (corner >= static_cast<std::uint32_t>(n)) solved += part;
+        if (solved > 0.0) surf = std::max(surf, depth(a + i / 6.0 * (b - a) + j / 6.0 * (c - a), posed));
       }
     ASSERT_EQ(samples, k_surface_samples);
   }
