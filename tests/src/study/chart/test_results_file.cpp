@@ -118,7 +118,8 @@ TEST_F(ResultsFile, AFileOfOtherColumnsIsRefusedAndLeftAlone) {
       use(file_);
       ADD_FAILURE() << "accepted";
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("results.csv: line 1: found \"name,age...\", expected the columns"));
+      EXPECT_THAT(error.what(),
+                  HasSubstr("results.csv: line 1: found \"name\" as column 1 of 2, expected the columns"));
     }
   }
   EXPECT_EQ(read_file(file_), "name,age\nx,3\n");
