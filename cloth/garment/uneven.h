@@ -13,8 +13,8 @@ namespace tutu::cloth {
 inline constexpr double k_unevenness = 1e-4;
 
 /// Moves each free particle by up to `most` (m) along each axis, evenly distributed. The generator alone decides: the
-/// same on every machine. Rest lengths stay those of the even design, and so does what kernels keep of a row: particles
-/// begin that much off, nothing is cut uneven.
+/// same on every machine. Rest lengths stay those of the even design: particles begin that much off, nothing is cut
+/// uneven.
 void make_uneven(const Garment& garment, double most, std::mt19937_64& random, std::span<Vec3> positions);
 
 } // namespace tutu::cloth
