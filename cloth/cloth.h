@@ -31,6 +31,7 @@
 #include "cloth/garment/garment_memory.h" // IWYU pragma: export
 #include "cloth/garment/reach.h"          // IWYU pragma: export
 #include "cloth/garment/springs.h"        // IWYU pragma: export
+#include "cloth/garment/uneven.h"         // IWYU pragma: export
 #include "cloth/mass_spring.h"            // IWYU pragma: export
 #include "cloth/mesh_xpbd.h"              // IWYU pragma: export
 #include "cloth/metrics.h"                // IWYU pragma: export

@@ -1,12 +1,11 @@
 #include "cloth/metrics.h"
 
-#include "proxies/distance/signed_distance.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace tutu::cloth {
+
 double percentile(std::vector<double>& samples, double share) {
   if (samples.empty()) return 0.0;
   const double rank = std::ceil(share * static_cast<double>(samples.size())) - 1.0;
@@ -68,39 +67,63 @@ double PercentileGatherer::percentile(double share) const {
   return cloth::percentile(samples, share);
 }
 
-std::vector<double> stretch_of(const Garment& garment, const Particles& particles) {
-  std::vector<double> stretch(garment.structural_count);
-  for (int k = 0; k < garment.structural_count; ++k) {
-    const Spring& spring = garment.springs[k];
-    stretch[k] = (particles.positions[spring.j] - particles.positions[spring.i]).norm() / spring.rest_length - 1.0;
+MeasuredParts::MeasuredParts(const Garment& of) : garment(&of), pinned(pinned_flags(of)) {
+  for (int k = 0; k < of.structural_count; ++k) {
+    const bool held = pinned[of.springs[k].i] && pinned[of.springs[k].j];
+    (held ? held_threads : free_threads).push_back(k);
   }
-  return stretch;
+  for (const auto& t : of.triangles)
+    if (!pinned[t[0]] || !pinned[t[1]] || !pinned[t[2]]) free_triangles.push_back(t);
 }
 
-std::vector<double> penetration_of(const Garment& garment, const Particles& particles,
-                                   std::span<const proxies::Capsule> colliders,
-                                   const std::optional<proxies::Plane>& ground) {
-  const std::vector<std::uint8_t> pinned = pinned_flags(garment);
-  std::vector<double> depths;
-  depths.reserve(particles.positions.size());
-  for (int i = 0; i < particles.count(); ++i) {
-    if (pinned[i]) continue;
-    double depth = 0.0;
-    for (const proxies::Capsule& collider : colliders)
-      depth = std::max(depth, -proxies::signed_distance(particles.positions[i], collider).distance);
-    if (ground) depth = std::max(depth, -proxies::signed_distance(particles.positions[i], *ground).distance);
-    depths.push_back(depth);
-  }
-  return depths;
+double strain_of(const Spring& thread, std::span<const Vec3> positions) {
+  return (positions[thread.j] - positions[thread.i]).norm() / thread.rest_length - 1.0;
 }
 
-double jitter_of(const Garment& garment, std::span<const Vec3> before_last, std::span<const Vec3> last,
+std::vector<double> strains_of(const Garment& garment, const Particles& particles) {
+  std::vector<double> strains(garment.structural_count);
+  for (int k = 0; k < garment.structural_count; ++k) strains[k] = strain_of(garment.springs[k], particles.positions);
+  return strains;
+}
+
+ThreadStrains thread_strains(const MeasuredParts& parts, std::span<const Vec3> positions) {
+  std::vector<double> longer, shorter, held_longer;
+  for (const int k : parts.free_threads) {
+    const double strain = strain_of(parts.garment->springs[k], positions);
+    longer.push_back(std::max(strain, 0.0));
+    shorter.push_back(std::max(-strain, 0.0));
+  }
+  for (const int k : parts.held_threads)
+    held_longer.push_back(std::max(strain_of(parts.garment->springs[k], positions), 0.0));
+  return {spread(std::move(longer)), spread(std::move(shorter)), spread(std::move(held_longer))};
+}
+
+void ThreadStrainGatherer::add(const MeasuredParts& parts, std::span<const Vec3> positions) {
+  for (const int k : parts.free_threads) {
+    const double strain = strain_of(parts.garment->springs[k], positions);
+    longer_.add(std::max(strain, 0.0));
+    shorter_.add(std::max(-strain, 0.0));
+  }
+  for (const int k : parts.held_threads)
+    held_longer_.add(std::max(strain_of(parts.garment->springs[k], positions), 0.0));
+}
+
+LongestThread longest_thread(const MeasuredParts& parts, std::span<const Vec3> positions) {
+  LongestThread longest;
+  for (const int k : parts.free_threads) {
+    const Spring& thread = parts.garment->springs[k];
+    const double strain = strain_of(thread, positions);
+    if (strain > longest.longer) longest = {strain, thread.i, thread.j};
+  }
+  return longest;
+}
+
+double jitter_of(const MeasuredParts& parts, std::span<const Vec3> before_last, std::span<const Vec3> last,
                  std::span<const Vec3> now, double frame_seconds) {
-  const std::vector<std::uint8_t> pinned = pinned_flags(garment);
   double sum = 0.0;
   int free = 0;
   for (std::size_t i = 0; i < now.size(); ++i) {
-    if (pinned[i]) continue;
+    if (parts.pinned[i]) continue;
     sum += (now[i] - 2.0 * last[i] + before_last[i]).norm();
     ++free;
   }

@@ -1,10 +1,20 @@
-// How good a state is: stretch, penetration, jitter. Plain double measurements, outside every timing.
+// How good a state is: threads longer and shorter than at rest, jitter. Plain double measurements, outside every
+// timing.
+//
+// A thread is a structural spring: from a particle to its neighbour along warp or weft; of a mesh, an edge. Its strain
+// is length / rest length - 1, with its sign. Everywhere a run is reported:
+//
+//   longer       max(0, strain) of every free thread, those that are shorter among them: 99 % are no longer than its
+//   p99 shorter      max(0, -strain) of the same held_longer  as longer, of the held threads
+//
+// Free is what has something that the solver moves; a thread between two pins is held: how long that chord is comes
+// from where it was pinned and is no work of the solver.
 #pragma once
 
 #include "cloth/garment/garment.h"
 #include "cloth/state/particles.h"
-#include "proxies/shapes.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -52,16 +62,49 @@ private:
   std::optional<SpreadGatherer> all_; ///< once they are not
 };
 
-/// length / rest length - 1 of every structural spring: negative where it is pressed together.
-std::vector<double> stretch_of(const Garment& garment, const Particles& particles);
+/// What of a garment is free and what is held, found once, so that measuring a frame looks nothing up and allocates
+/// nothing. The garment must outlive it.
+struct MeasuredParts {
+  explicit MeasuredParts(const Garment& garment);
 
-/// Depth of every free particle below the nearest collider surface, m, >= 0, over all colliders, closed form.
-std::vector<double> penetration_of(const Garment& garment, const Particles& particles,
-                                   std::span<const proxies::Capsule> colliders,
-                                   const std::optional<proxies::Plane>& ground);
+  const Garment* garment;
+  std::vector<std::uint8_t> pinned;            ///< [particle]
+  std::vector<int> free_threads, held_threads; ///< in Garment::springs
+  std::vector<std::array<std::uint32_t, 3>> free_triangles;
+};
+
+/// length / rest length - 1.
+double strain_of(const Spring& thread, std::span<const Vec3> positions);
+/// The same of every thread, held ones among them, in the order of Garment::springs.
+std::vector<double> strains_of(const Garment& garment, const Particles& particles);
+
+/// How far threads are from their rest length, by the names above. Not in per cent.
+struct ThreadStrains {
+  Spread longer, shorter, held_longer;
+};
+
+/// Of one frame, exactly.
+ThreadStrains thread_strains(const MeasuredParts& parts, std::span<const Vec3> positions);
+
+/// Of any number of frames: every thread of every frame is a sample.
+class ThreadStrainGatherer {
+public:
+  void add(const MeasuredParts& parts, std::span<const Vec3> positions);
+  ThreadStrains strains() const { return {longer_.spread(), shorter_.spread(), held_longer_.spread()}; }
+
+private:
+  SpreadGatherer longer_, shorter_, held_longer_;
+};
+
+/// The free thread that is longest compared with its rest length.
+struct LongestThread {
+  double longer = 0.0; ///< its strain; 0: none is longer than at rest
+  int i = 0, j = 0;    ///< its particles
+};
+LongestThread longest_thread(const MeasuredParts& parts, std::span<const Vec3> positions);
 
 /// Mean |x(f+1) - 2 x(f) + x(f-1)| / frame^2 over free particles, m/s2.
-double jitter_of(const Garment& garment, std::span<const Vec3> before_last, std::span<const Vec3> last,
+double jitter_of(const MeasuredParts& parts, std::span<const Vec3> before_last, std::span<const Vec3> last,
                  std::span<const Vec3> now, double frame_seconds);
 
 } // namespace tutu::cloth

@@ -6,6 +6,7 @@
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
 #include "src/measure/frame_metrics.h"
+#include "src/measure/uneven_json.h"
 #include "src/options/setting_options.h"
 #include "src/run/session.h"
 #include "src/study/bench/dancer_skirt.h"
@@ -45,11 +46,13 @@ struct Run {
   std::vector<FrameMetrics> metrics; ///< of the measured frames
   std::vector<double> ms;
   std::optional<RunFailure> failure;
+  RunEnd end;
 };
 
 Run run_scene(DancerSkirt& scene, int frames) {
   Run run;
   const double frame_seconds = 1.0 / k_dancer_frames_per_second;
+  const ClothProbe probe(scene.skirt());
   std::vector<Vec3> last = scene.particles().positions, before_last = last;
   Progress bar(fmt::format("{} {}", k_dancer_skirt, scene.setup().n), frames);
   while (scene.frame() < frames && !interrupted()) {
@@ -63,12 +66,16 @@ Run run_scene(DancerSkirt& scene, int frames) {
     }
     if (frame >= k_first_measured) {
       run.metrics.push_back(
-          measure_frame(scene.skirt(), scene.particles(), last, before_last, scene.proxies(), frame_seconds));
+          measure_frame(probe, scene.particles().positions, last, before_last, scene.proxies(), frame_seconds));
       run.ms.push_back(scene.cpu_ms());
     }
     bar.tick(scene.frame());
   }
   bar.finish();
+  ClothDepths depths;
+  probe.measure(scene.proxies(), std::nullopt, scene.particles().positions, depths);
+  run.end.garments.push_back(
+      {scene.skirt().name, cloth::longest_thread(probe.parts(), scene.particles().positions), deepest_of(depths), {}});
   return run;
 }
 
@@ -85,6 +92,12 @@ json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics&
   const auto figure = [&](double value) { return m.frames > 0 ? json(value) : json(nullptr); };
   const auto mm = [&](double metres) { return figure(1000.0 * metres); };
   const auto percent = [&](double share) { return figure(100.0 * share); };
+  const auto strains = [&](const StrainOverFrames& s) {
+    return json{{"max", percent(s.worst.max)},
+                {"median", percent(s.worst.median)},
+                {"p99", percent(s.p99)},
+                {"mean", percent(s.mean)}};
+  };
   json result = {{"name", options.name},
                  {"n", options.n},
                  {"solver", cloth::name_of(scene.setup().solver)},
@@ -102,28 +115,29 @@ json json_of(const Options& options, const DancerSkirt& scene, const RunMetrics&
                    {"mean", mm(m.pen_mean)},
                    {"share_over_1mm", figure(m.pen_share)}}},
                  {"cen_mm", {{"max", mm(m.cen.max)}, {"median", mm(m.cen.median)}, {"mean", mm(m.cen_mean)}}},
-                 {"surf_mm", {{"max", mm(m.surf.max)}, {"median", mm(m.surf.median)}}},
-                 {"stretch_pct",
-                  {{"max", percent(m.stretch.max)},
-                   {"median", percent(m.stretch.median)},
-                   {"p99", percent(m.stretch_p99)},
-                   {"mean", percent(m.stretch_mean)}}},
-                 {"longest_pct", {{"max", percent(m.longest.max)}, {"median", percent(m.longest.median)}}},
+                 {"surface_mm", {{"max", mm(m.surface.max)}, {"median", mm(m.surface.median)}}},
+                 {"longer_pct", strains(m.longer)},
+                 {"shorter_pct", strains(m.shorter)},
+                 {"held_longer_pct", strains(m.held_longer)},
                  {"jitter", figure(m.jitter)},
                  {"hem_y", figure(m.hem_y)},
                  {"ms", {{"median", figure(m.ms_median)}, {"p99", figure(m.ms_p99)}}},
                  {"ns_per_particle_substep", figure(ns_per_particle_substep(m, scene.setup()))},
                  {"diverged", run.failure.has_value()},
+                 {"end", run.end.json()},
                  {"state_hash", fmt::format("{:016x}", cloth::state_hash(scene.particles()))}};
+  result.update(uneven_json(scene.setup()));
   if (run.failure) result["failure"] = run.failure->message();
   return result;
 }
 
 std::string text_of(const Options& options, const DancerSkirt& scene, const RunMetrics& m) {
-  std::string text = fmt::format(
-      "{}{}: {} x {} particles, {} proxies, {} ({}), {} substeps a frame, contact offset {:.1f} mm\n", options.name,
-      options.still ? " (still)" : "", options.n, options.n, k_dancer_proxies, cloth::name_of(scene.setup().solver),
-      backend_of(scene), scene.setup().substeps, 1000.0 * scene.skirt().fabric.contact_offset());
+  std::string text =
+      fmt::format("{}{}: {} x {} particles, {} proxies, {} ({}), {} substeps a frame, contact offset {:.1f} mm, start "
+                  "uneven by {:g} mm (seed {})\n",
+                  options.name, options.still ? " (still)" : "", options.n, options.n, k_dancer_proxies,
+                  cloth::name_of(scene.setup().solver), backend_of(scene), scene.setup().substeps,
+                  1000.0 * scene.skirt().fabric.contact_offset(), scene.setup().uneven_mm, scene.setup().seed);
   if (m.frames == 0)
     return text + fmt::format("diverged or stopped before frame {}: nothing measured\n", k_first_measured);
   const auto row = [&](const char* what, const char* unit, const OverFrames& worst, double scale,
@@ -136,10 +150,13 @@ std::string text_of(const Options& options, const DancerSkirt& scene, const RunM
   row("particles in proxies", "mm", m.pen, 1e3,
       fmt::format("mean {:.4f}, {:.2f} % deeper than 1 mm", 1e3 * m.pen_mean, 1e2 * m.pen_share));
   row("centroids in proxies", "mm", m.cen, 1e3, fmt::format("mean {:.4f}", 1e3 * m.cen_mean));
-  row("surface in proxies", "mm", m.surf, 1e3, fmt::format("{} samples a triangle", k_surface_samples));
-  row("stretch", "%", m.stretch, 1e2,
-      fmt::format("p99 {:.2f}, mean {:.2f}", 1e2 * m.stretch_p99, 1e2 * m.stretch_mean));
-  row("stretch, longer only", "%", m.longest, 1e2, "");
+  row("surface in proxies", "mm", m.surface, 1e3, fmt::format("{} samples a triangle", k_surface_samples));
+  const auto strains = [&](const char* what, const StrainOverFrames& s) {
+    row(what, "%", s.worst, 1e2, fmt::format("p99 {:.2f}, mean {:.2f}", 1e2 * s.p99, 1e2 * s.mean));
+  };
+  strains("threads longer", m.longer);
+  strains("threads shorter", m.shorter);
+  strains("held threads longer", m.held_longer);
   text += fmt::format("jitter {:.2f} m/s2, hem at {:.3f} m\n{:.3f} ms a frame (p99 {:.3f}), {:.1f} ns a particle and "
                       "substep\nstate hash {:016x}\n",
                       m.jitter, m.hem_y, m.ms_median, m.ms_p99, ns_per_particle_substep(m, scene.setup()),
@@ -161,6 +178,7 @@ int run_dancer_skirt(const Options& options) {
   fmt::print("{}", text_of(options, scene, metrics));
   if (done.failure) fmt::print(stderr, "tutu: {}\n", done.failure->message());
   if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", scene.frame(), options.frames);
+  print_warning(done.end.warning());
   return done.failure || interrupted() ? k_not_met : k_ok;
 }
 
@@ -171,6 +189,7 @@ int run_stability_family(const Options& options) {
   if (!options.json.empty()) write_file(options.json, json_text(report.json));
   fmt::print("{}", report.text);
   if (interrupted()) fmt::print(stderr, "tutu: interrupted\n");
+  print_warning(report.end.warning());
   return report.passed ? k_ok : k_not_met;
 }
 
@@ -199,7 +218,7 @@ void add_bench(CLI::App& app, int& status) {
   command->add_option("--json", options->json, "Write the figures to this file");
 
   const std::string group = k_dancer_skirt;
-  const std::vector<CLI::Option*> of_skirt = {
+  std::vector<CLI::Option*> of_skirt = {
       command->add_option("--n", options->n, "Particles along each side of the cloth")
           ->check(CLI::Range(8, 1024))
           ->capture_default_str()
@@ -209,8 +228,10 @@ void add_bench(CLI::App& app, int& status) {
           ->capture_default_str()
           ->group(group),
       command->add_flag("--still", options->still, "The dancer stands still")->group(group)};
+  for (CLI::Option* option : add_setting_options(*command, options->changes, {"uneven_mm", "seed"}))
+    of_skirt.push_back(option);
   std::vector<CLI::Option*> of_others = add_setting_options(*command, options->changes, {"adaptive_substeps"});
-  of_others.push_back(command->add_option("--runs", options->runs, "Jittered starts of each variant")
+  of_others.push_back(command->add_option("--runs", options->runs, "Uneven starts of each variant")
                           ->check(CLI::Range(1, 1000))
                           ->capture_default_str()
                           ->group("scenes of stability"));

@@ -16,7 +16,6 @@ namespace {
 
 struct Options {
   ChartOptions chart;
-  std::uint64_t seed = 0;
   std::string out, name;
   std::vector<SettingChange> changes;
   std::optional<std::string> proxies;
@@ -31,7 +30,9 @@ Setting setting_for(const Options& o, const Scene& scene) {
       throw InputError("", change.by, wrong->found, wrong->expected);
   if (o.resolution) s.resolution = *o.resolution;
   if (o.proxies) s.proxies = *o.proxies;
-  s.name = !o.name.empty() || !(s == own_setting(scene.settings)) ? o.name : s.name;
+  Setting own = own_setting(scene.settings);
+  own.seed = s.seed; // another start is no other setting
+  s.name = !o.name.empty() || !(s == own) ? o.name : s.name;
   return s;
 }
 
@@ -52,18 +53,19 @@ int run(const Options& options) {
   const auto reference = options.chart.obtain(base, 1);
   if (!reference) return k_not_met;
 
-  const CellStart start{start_at_resolution(base, reference->start, setting.resolution), options.seed};
+  const GarmentPositions start = start_at_resolution(base, reference->start, setting.resolution);
   const CellRun run = run_cell(scene, start, protocol, true, [](const CellRun&) { return !interrupted(); });
   if (run.stopped) {
     fmt::print(stderr, "tutu: interrupted; no row written\n");
     return k_not_met;
   }
   const LoadedScene truth = with_setting(base, reference_setting(base, plan, reference->substeps));
-  const CellTask task{base.name(), reference->fingerprint, plan.protocol, setting, options.seed};
+  const CellTask task{base.name(), reference->fingerprint, plan.protocol, setting};
   const Row row =
       row_of(scene, task, run, errors_against(truth.garments, reference->trajectory, scene.garments, run.trajectory));
   if (options.out.empty()) print_row(row);
   else add_row(options.out, row);
+  print_warning(run.end.warning());
   return run.failure.empty() ? k_ok : k_not_met;
 }
 
@@ -79,7 +81,6 @@ void add_cell(CLI::App& app, int& status) {
       ->check(CLI::Range(0.01, 100.0));
   command->add_option("--proxies", o->proxies, "A proxies file, or none, in place of the scene's");
   command->add_option("--name", o->name, "What the row is called");
-  command->add_option("--seed", o->seed, "Of the start's jitter; 0: none")->capture_default_str();
   command->add_option("-o,--out", o->out, "Add the row to this file (.csv); printed when left out");
   command->callback([o, &status] { status = run(*o); });
 }

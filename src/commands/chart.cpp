@@ -69,11 +69,11 @@ void make_fitted(std::vector<Setting>& settings, const LoadedScene& scene, const
 /// Each setting from each start: all settings once before any twice.
 std::vector<CellTask> tasks_of(const std::vector<Setting>& settings, int repeats, const CellTask& like) {
   std::vector<CellTask> tasks;
-  for (int seed = 0; seed < repeats; ++seed)
+  for (int k = 0; k < repeats; ++k)
     for (const Setting& setting : settings) {
       CellTask& task = tasks.emplace_back(like);
       task.setting = setting;
-      task.seed = static_cast<std::uint64_t>(seed);
+      task.setting.seed += k;
     }
   return tasks;
 }
@@ -90,7 +90,7 @@ std::vector<std::string> call_of(const Options& options, const CellTask& task, c
   words.insert(words.begin(), "cell");
   for (const std::string& word : setting_options(setting_values(task.setting), of_scene)) words.push_back(word);
   if (!task.setting.name.empty()) words.push_back("--name=" + task.setting.name); // it may begin with -
-  words.insert(words.end(), {"--seed", std::to_string(task.seed), "--out", row_file(options, task).string()});
+  words.insert(words.end(), {"--seed", std::to_string(task.setting.seed), "--out", row_file(options, task).string()});
   return words;
 }
 
@@ -147,7 +147,7 @@ bool run_missing(const Options& options, const std::vector<CellTask>& tasks, con
 std::vector<Row> rows_to_draw(const fs::path& file, const std::vector<CellTask>& tasks) {
   std::map<std::pair<SettingValues, std::string>, std::string> keys; // by setting and seed
   for (const CellTask& task : tasks)
-    keys.emplace(std::pair(setting_values(task.setting), std::to_string(task.seed)), cell_key(task));
+    keys.emplace(std::pair(setting_values(task.setting), std::to_string(task.setting.seed)), cell_key(task));
   std::vector<Row> rows;
   for (const Row& row : read_results(file).rows) {
     const auto now = keys.find({row.setting(), row.text("seed")});
@@ -187,7 +187,7 @@ int run(const Options& options) {
   const int repeats = options.repeats > 0 ? options.repeats : options.chart.quick ? k_quick_repeats : k_repeats;
   const SettingValues of_scene = setting_values(own_setting(scene.settings));
   const std::vector<CellTask> tasks =
-      tasks_of(settings, repeats, {scene.name(), reference->fingerprint, plan.protocol, {}, 0});
+      tasks_of(settings, repeats, {scene.name(), reference->fingerprint, plan.protocol, {}});
   const bool whole = run_missing(options, tasks, of_scene);
 
   const std::vector<Row> rows = rows_to_draw(folder / "results.csv", tasks);
@@ -225,8 +225,8 @@ void add_chart(CLI::App& app, int& status) {
       ->delimiter(',');
   command
       ->add_option("--repeats", options->repeats,
-                   "Starts of each setting, the first as draped, the others jittered "
-                   "(3; 2 with --quick)")
+                   "Uneven starts of each setting, the first with the reference's seed, each with the next (3; 2 with "
+                   "--quick)")
       ->check(CLI::Range(1, 1000));
   command->callback([options, &status] { status = run(*options); });
 }

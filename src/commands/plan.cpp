@@ -8,6 +8,7 @@
 #include "src/base/outputs.h"
 #include "src/base/progress.h"
 #include "src/commands/commands.h"
+#include "src/measure/uneven_json.h"
 #include "src/options/chart_options.h"
 #include "src/options/scene_options.h"
 #include "src/run/drape.h"
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   ChartOptions chart; ///< of which the scene and the reference are asked for here
-  double error_mm = 0.0, stretch_percent = 5.0;
+  double error_mm = 0.0, longer_percent = 5.0;
   std::optional<double> ms;
   std::string error = "all", out, json;
   std::optional<int> frames;
@@ -43,7 +44,7 @@ PlanGoal goal_of(const Options& options, const LoadedScene& scene) {
   goal.error = static_cast<PlanError>(std::find(k_plan_error_names.begin(), k_plan_error_names.end(), options.error) -
                                       k_plan_error_names.begin());
   goal.most = 1e-3 * options.error_mm;
-  goal.most_stretch = 1e-2 * options.stretch_percent;
+  goal.most_longer = 1e-2 * options.longer_percent;
   goal.frames = std::min(options.frames.value_or(k_most_frames), frames_of(scene));
   goal.starts = options.starts;
   goal.compares_bad = options.ms.has_value();
@@ -113,6 +114,8 @@ void write_plan(const LoadedScene& scene, PlanBench& bench, PlanRecord& record, 
   const LoadedScene planned = bench.scene_of(model);
   SceneDescription description = planned.description();
   description.drape = fs::path(file).replace_extension(".drape.json");
+  description.settings.uneven_mm =
+      read_scene(options.chart.scene_file()).settings.uneven_mm; // that of a chart is not its own
   for (const proxies::Proxy& proxy : planned.proxies) record.kept.push_back(proxy.name);
   if (!scene.proxies.empty()) record.proxies = bench.proxies().uses(model);
   description.proxies.reset();
@@ -173,6 +176,7 @@ int run(Options options) {
   if (!options.json.empty()) {
     nlohmann::ordered_json json = plan_json(scene.name(), record, goal, bench.limits(), options.ms);
     json["own"] = errors_json(bench.own());
+    json.update(uneven_json(scene.settings));
     json["out"] = options.out;
     write_file(options.json, json_text(json));
   }
@@ -200,15 +204,14 @@ void add_plan(CLI::App& app, int& status) {
       ->check(finite_number())
       ->check(CLI::Range(1e-6, 1e6));
   command
-      ->add_option("--stretch-percent", o->stretch_percent,
+      ->add_option("--longer-percent", o->longer_percent,
                    "99 % of the threads are at most so much longer, or as much as in the scene itself")
       ->check(finite_number())
       ->check(CLI::Range(0.01, 1000.0))
       ->capture_default_str();
   command->add_option("--frames", o->frames, "Frames of motion; all of it when left out")
       ->check(CLI::Range(1, k_most_frames));
-  command
-      ->add_option("--starts", o->starts, "Starts the plan is verified from, the first as draped, the others jittered")
+  command->add_option("--starts", o->starts, "Uneven starts the plan is verified from, each with another seed")
       ->check(CLI::Range(1, 100))
       ->capture_default_str();
   command

@@ -222,13 +222,18 @@ int play_headless(const PlayOptions& options, const Draped& first, const Draped*
   const bool diverged = failed.failure().has_value();
   const std::string written = diverged ? "" : pictures.finish();
   fmt::print("{}", stats.text(session));
-  nlohmann::json json = stats.json(session);
+  const RunEnd end = stats.end(session);
+  nlohmann::json json = stats.json(session, end);
+  std::string warning = end.warning();
   if (beside) {
-    json["against"] = other_stats.json(*beside);
+    const RunEnd other_end = other_stats.end(*beside);
+    json["against"] = other_stats.json(*beside, other_end);
     json["against"]["setting"] = split_caption(options);
     json["apart_mm"] = apart.json();
     fmt::print("beside it, {}: {}", split_caption(options), other_stats.text(*beside));
     fmt::print("apart, mm: {}\n", json["apart_mm"].dump());
+    if (const std::string wrong = other_end.warning(); !wrong.empty())
+      warning += fmt::format("{}beside it, {}: {}", warning.empty() ? "" : "; ", split_caption(options), wrong);
   }
   if (explainer && explainer->why()) {
     json["why"] = json_of(*explainer->why());
@@ -239,6 +244,7 @@ int play_headless(const PlayOptions& options, const Draped& first, const Draped*
   tell_recoveries(session.troubles());
   if (diverged) fmt::print(stderr, "tutu: {}\n", failed.failure()->message());
   if (interrupted()) fmt::print(stderr, "tutu: interrupted after {} of {} frames\n", session.frame(), frames);
+  print_warning(warning);
   return diverged || interrupted() ? k_not_met : k_ok;
 }
 

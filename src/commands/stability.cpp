@@ -108,7 +108,7 @@ void add_stability(CLI::App& app, int& status) {
   command->add_option("-o,--out", options->out, "Folder for the maps (.svg, .png) and cells.csv")
       ->capture_default_str();
   command->add_flag("--quick", options->quick, "Fewer cells and starts: about a minute on two cores");
-  command->add_option("--starts", options->starts, "Jittered starts of each cell; 4, or 2 with --quick")
+  command->add_option("--starts", options->starts, "Uneven starts of each cell; 4, or 2 with --quick")
       ->check(CLI::Range(1, 1000));
   command->add_option("--only", options->only, "Maps whose names begin so")->delimiter(',');
   command->add_flag("--no-pictures", options->no_pictures, "Figures only: needs no gnuplot");

@@ -80,6 +80,7 @@ int run(const Options& options) {
   fmt::print("{}", validation_text(validation, scene, verdict));
   if (!options.html.empty()) fmt::print("wrote {}\n", options.html);
   if (validation.cloth_failure) fmt::print(stderr, "tutu: {}\n", *validation.cloth_failure);
+  if (validation.cloth) print_warning(validation.cloth->end.warning());
   return validation.cloth_failure || (verdict && !verdict->met()) ? k_not_met : k_ok;
 }
 

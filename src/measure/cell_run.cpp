@@ -2,8 +2,6 @@
 
 #include "proxies/distance/signed_distance.h"
 #include "rig/error.h"
-#include "src/measure/cloth_in_body.h"
-#include "src/measure/run_stats.h"
 #include "src/run/posed_body.h"
 
 #include <algorithm>
@@ -12,7 +10,6 @@
 #include <ctime>
 #include <fmt/format.h>
 #include <limits>
-#include <random>
 
 namespace tutu::app {
 namespace {
@@ -27,22 +24,6 @@ double now_ms(int threads) {
   timespec now{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
-
-GarmentPositions jittered(const Scene& scene, const CellStart& start) {
-  GarmentPositions positions = start.positions;
-  if (start.seed == 0) return positions;
-  std::mt19937_64 random(start.seed);
-  // Not std::uniform_real_distribution, whose numbers are each library's own.
-  const auto shift = [&] { return k_start_jitter * (2.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1.0); };
-  for (std::size_t g = 0; g < positions.size(); ++g) {
-    const std::vector<std::uint8_t> pinned = cloth::pinned_flags(scene.garments[g]);
-    for (std::size_t i = 0; i < positions[g].size(); ++i) {
-      const double x = shift(), y = shift(), z = shift();
-      if (!pinned[i]) positions[g][i] += Vec3(x, y, z);
-    }
-  }
-  return positions;
 }
 
 GarmentPositions positions_of(const Session& session) {
@@ -93,11 +74,13 @@ public:
   void after_frame(const Session& session) {
     const proxies::SweptColliders colliders = session.colliders().swept();
     for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
-      const cloth::Particles& particles = session.garment(static_cast<int>(g)).particles();
-      for (const double s : cloth::stretch_of(scene_->garments[g], particles)) stretch_.add(std::max(0.0, s));
+      const std::vector<Vec3>& positions = session.garment(static_cast<int>(g)).particles().positions;
+      strains_.add(probes_[g].parts(), positions);
       if (session.collides_with_body()) continue;
-      for (const double d : cloth::penetration_of(scene_->garments[g], particles, colliders.end, colliders.ground))
-        in_proxies_.add(d);
+      found_.clear();
+      probes_[g].measure(colliders.end, colliders.ground, positions, found_);
+      for (const double depth : found_.particle_depths) in_proxies_.add(depth);
+      run_->surface_in_proxies = std::max(run_->surface_in_proxies, found_.surface);
     }
   }
 
@@ -109,7 +92,7 @@ public:
       probes_[g].measure(mesh_, session.garment(static_cast<int>(g)).particles().positions, found_);
       for (const double depth : found_.particle_depths) in_body_.add(depth);
       inside_.add(found_.particles);
-      run_->deepest_in_body = std::max(run_->deepest_in_body, found_.deepest());
+      run_->surface_in_body = std::max(run_->surface_in_body, found_.surface);
     }
   }
 
@@ -117,7 +100,7 @@ public:
     const GarmentPositions now = positions_of(session);
     if (!before_last_.empty())
       for (std::size_t g = 0; g < now.size(); ++g)
-        jitter_.add(cloth::jitter_of(scene_->garments[g], before_last_[g], last_[g], now[g], session.frame_seconds()));
+        jitter_.add(cloth::jitter_of(probes_[g].parts(), before_last_[g], last_[g], now[g], session.frame_seconds()));
     before_last_ = std::move(last_);
     last_ = now;
     const double energy = energy_of(session);
@@ -125,12 +108,15 @@ public:
     run_->energy_rise = std::max(run_->energy_rise, energy - least_energy_);
   }
 
-  void finish() {
+  void finish(Session& session) {
+    session.skin_body();
+    mesh_.pose(session.body_positions());
+    run_->end = end_of(session, probes_, &mesh_);
     run_->in_proxies = in_proxies_.spread();
     run_->in_body = in_body_.spread();
     run_->share_in_body =
         static_cast<double>(inside_.inside) / static_cast<double>(std::max<std::int64_t>(1, inside_.asked));
-    run_->stretch = stretch_.spread();
+    run_->strains = strains_.strains();
     run_->jitter = jitter_.spread().mean;
   }
 
@@ -140,9 +126,10 @@ private:
   PosedBody body_;
   proxies::BodyMesh mesh_;
   std::vector<ClothProbe> probes_;
-  ClothInBody found_;
+  ClothDepths found_;
   DepthCount inside_;
-  cloth::SpreadGatherer in_proxies_, in_body_, stretch_, jitter_;
+  cloth::SpreadGatherer in_proxies_, in_body_, jitter_;
+  cloth::ThreadStrainGatherer strains_;
   GarmentPositions last_, before_last_;
   double least_energy_ = std::numeric_limits<double>::infinity();
 };
@@ -176,13 +163,13 @@ Protocol at_rate(const Protocol& protocol, double scene_rate, double rate) {
   return {convert(protocol.frames), convert(protocol.settle), convert(protocol.held), convert(protocol.every)};
 }
 
-CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& protocol, bool measured,
+CellRun run_cell(const Scene& scene, const GarmentPositions& start, const Protocol& protocol, bool measured,
                  const std::function<bool(const CellRun&)>& go_on) {
   CellRun run;
   std::optional<Measuring> measuring;
   if (measured) measuring.emplace(scene, run);
   Session session(scene);
-  session.start(jittered(scene, start));
+  session.start(start);
   const auto alive = [&] { return !session.failure() && !run.stopped; };
   const auto frame = [&](const std::function<void()>& take, const std::function<void()>& look) {
     take();
@@ -221,7 +208,7 @@ CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& pro
   run.recoveries = session.troubles().recoveries;
   run.most_substeps = std::max(scene.settings.substeps, session.troubles().worst_split.substeps);
   run.state_hash = session.state_hash();
-  if (measuring) measuring->finish();
+  if (measuring) measuring->finish(session);
   return run;
 }
 

@@ -6,7 +6,7 @@
 // compared; what still moves while nobody moves it is jitter, and energy that grows then is drift.
 #pragma once
 
-#include "cloth/metrics.h"
+#include "src/measure/run_end.h"
 #include "src/run/session.h"
 
 #include <functional>
@@ -53,26 +53,21 @@ struct CellRun {
   std::vector<FrameTimes> stages; ///< ms, of each frame of the motion
   std::vector<double> ms;         ///< of the same frames: the thread's own time with one thread, else all that passes
   cloth::Spread in_proxies, in_body; ///< m, depth of free particles; in_body of the recorded frames
-  double deepest_in_body = 0.0;      ///< m, at any sample of a triangle
+  double surface_in_proxies = 0.0;   ///< m, the deepest sample of a triangle,
+  double surface_in_body = 0.0;      ///< of the recorded frames
   double share_in_body = 0.0;        ///< of free particles of the recorded frames
-  cloth::Spread stretch;             ///< of threads that are longer than at rest
-  double jitter = 0.0;               ///< m/s2, mean, while held
-  double energy_rise = 0.0;          ///< J, the most above the least before, while held
+  cloth::ThreadStrains strains;
+  RunEnd end;               ///< after the last frame, held ones among them
+  double jitter = 0.0;      ///< m/s2, mean, while held
+  double energy_rise = 0.0; ///< J, the most above the least before, while held
   std::uint64_t state_hash = 0;
 };
 
-/// `seed` > 0 moves each free particle of the start by up to k_start_jitter along each axis.
-struct CellStart {
-  GarmentPositions positions;
-  std::uint64_t seed = 0;
-};
-inline constexpr double k_start_jitter = 1e-4; ///< m: far below any error that matters, so that what grows is the run's
-
-/// `scene` is as the setting has it; `protocol` in its own frames. Without `measured` only the recording, the times,
-/// the failure and the substeps are there, and the run is as fast as it can be. `go_on` is asked after each frame, and
-/// sees what has been measured so far (of the spreads nothing). Throws InputError for a body without sides where it is
-/// measured.
-CellRun run_cell(const Scene& scene, const CellStart& start, const Protocol& protocol, bool measured,
+/// `scene` is as the setting has it, seed and all; `start` as it was draped; `protocol` in its own frames. Without
+/// `measured` only the recording, the times, the failure and the substeps are there, and the run is as fast as it can
+/// be. `go_on` is asked after each frame, and sees what has been measured so far (of the spreads nothing). Throws
+/// InputError for a body without sides where it is measured.
+CellRun run_cell(const Scene& scene, const GarmentPositions& start, const Protocol& protocol, bool measured,
                  const std::function<bool(const CellRun&)>& go_on);
 
 } // namespace tutu::app

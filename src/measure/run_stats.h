@@ -1,7 +1,7 @@
 // What a run measured, frame by frame, and how it is reported.
 #pragma once
 
-#include "cloth/metrics.h"
+#include "src/measure/run_end.h"
 #include "src/run/session.h"
 
 #include <nlohmann/json.hpp>
@@ -10,26 +10,24 @@
 
 namespace tutu::app {
 
-/// A particle counts as inside a proxy when it is deeper than this, m: above the rounding of a projection (1e-15),
-/// below any depth that could be seen.
-inline constexpr double k_inside_depth = 1e-6;
-
 /// Collects after each frame; measures outside the timings. Its memory does not grow with the run beyond the first
 /// cloth::PercentileGatherer::k_exact frames.
 class RunStats {
 public:
-  explicit RunStats(const Scene& scene) : scene_(&scene) {}
+  explicit RunStats(const Scene& scene);
 
   void add(const Session& session);
 
-  /// What `play --json` writes. Lengths in mm where the name says so.
-  nlohmann::json json(const Session& session) const;
+  /// How the garments are left: in what they collide with, and in the body where it has sides, which the session has
+  /// skinned in this frame (Runtime::skin_body).
+  RunEnd end(const Session& session);
+
+  /// What `play --json` writes. Lengths in mm, strains in per cent where the name says so. `end` is in it.
+  nlohmann::json json(const Session& session, const RunEnd& end) const;
   /// The same for a person, some lines.
   std::string text(const Session& session) const;
 
 private:
-  /// Largest and 99th percentile of the lengthening, mean of the change either way.
-  cloth::Spread stretch() const;
   nlohmann::json substeps_json(const Session& session) const;
   struct Stage {
     const char* name;
@@ -39,12 +37,20 @@ private:
     std::vector<Vec3> last, before_last;
   };
 
+  /// The session's skin as it is now.
+  const proxies::BodyMesh& posed_body(const Session& session);
+
   const Scene* scene_;
   std::vector<Stage> stages_ = {{"pose", {}},    {"proxies", {}}, {"broad", {}}, {"cloth", {}},
                                 {"contact", {}}, {"skin", {}},    {"total", {}}};
-  cloth::SpreadGatherer depths_mm_, jitters_;
-  cloth::SpreadGatherer stretches_, strains_; ///< of threads that are longer than at rest; of all, either way
-  std::int64_t inside_ = 0;                   ///< samples deeper than k_inside_depth
+  std::vector<ClothProbe> probes_;        ///< [garment]
+  ClothDepths depths_;                    ///< of one garment in one frame
+  std::optional<proxies::BodyMesh> body_; ///< once it was asked for
+  cloth::SpreadGatherer particles_mm_;    ///< a sample a free particle and frame
+  cloth::SpreadGatherer surface_mm_;      ///< a sample a frame: the deepest of all garments
+  cloth::SpreadGatherer jitters_;
+  cloth::ThreadStrainGatherer strains_;
+  std::int64_t inside_ = 0; ///< particles deeper than k_inside_depth
   std::vector<History> history_;
   int frames_ = 0;
 };

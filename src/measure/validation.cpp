@@ -36,7 +36,7 @@ struct SkinGroups {
 struct FrameMeasure {
   proxies::FrameErrors errors;
   proxies::VolumeCount volume;
-  ClothInBody cloth;
+  ClothDepths cloth;
   ClothCrossings<proxies::SurfaceCrossings> crossings;
 };
 
@@ -334,11 +334,28 @@ private:
       report.particles.add(frame.cloth->particles);
       report.edges.add(frame.cloth->edges);
       report.triangles.add(frame.cloth->triangles);
-      report.deepest_of_triangles = std::max(report.deepest_of_triangles, frame.cloth->deepest_of_triangles);
+      report.surface = std::max(report.surface, frame.cloth->surface);
     }
     report.particles_p99 = particle_depths_.figures().p99;
-    report.worst_frames = worst([](const FrameReport& f) { return f.cloth ? f.cloth->deepest() : 0.0; });
+    report.worst_frames = worst([](const FrameReport& f) { return f.cloth ? f.cloth->surface : 0.0; });
+    report.end = cloth_end();
     result_.cloth = std::move(report);
+  }
+
+  RunEnd cloth_end() {
+    const std::size_t last = cloth_.positions.size() - 1;
+    ThreadState state(*scene_);
+    state.posed.pose_at(time_of(frames_[last]));
+    state.body.pose(state.posed.positions());
+    RunEnd end;
+    for (std::size_t g = 0; g < probes_.size(); ++g) {
+      const std::vector<Vec3>& positions = cloth_.positions[last][g];
+      ClothDepths depths;
+      probes_[g].measure(state.body, positions, depths);
+      end.garments.push_back(
+          {scene_->garments[g].name, cloth::longest_thread(probes_[g].parts(), positions), {}, deepest_of(depths)});
+    }
+    return end;
   }
 
   /// The first k_worst_frames by `score`, each k_apart from those before; none without a score.

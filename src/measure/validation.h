@@ -3,8 +3,8 @@
 
 #include "proxies/validate/error_figures.h"
 #include "proxies/validate/validate.h"
-#include "src/measure/cloth_in_body.h"
 #include "src/measure/crossings.h"
+#include "src/measure/run_end.h"
 #include "src/run/scene.h"
 
 #include <functional>
@@ -57,15 +57,16 @@ struct FrameReport {
   proxies::BoundedMax under, over;
   double coverage = 0.0;
   std::vector<int> collisions, inside; ///< proxies that meet the mesh; those of them wholly inside the body
-  std::optional<ClothInBody> cloth;    ///< with particle_depths empty
+  std::optional<ClothDepths> cloth;    ///< with particle_depths empty
   ClothCrossings<proxies::SurfaceCrossings> crossings; ///< with `cloth`
 };
 
 struct ClothReport {
   DepthCount particles, edges, triangles;
-  double deepest_of_triangles = 0.0; ///< m
-  double particles_p99 = 0.0;        ///< m
-  std::vector<int> worst_frames;     ///< indices into Validation::frames, the deepest first
+  double surface = 0.0;          ///< m, as ClothDepths::surface
+  double particles_p99 = 0.0;    ///< m
+  std::vector<int> worst_frames; ///< indices into Validation::frames, the deepest first
+  RunEnd end;                    ///< after the last frame that was measured
   ClothCrossings<CrossingTally> crossings;
 };
 

@@ -1,5 +1,6 @@
 #include "src/options/chart_options.h"
 
+#include "cloth/garment/uneven.h"
 #include "rig/error.h"
 #include "src/base/interrupt.h"
 #include "src/options/scene_options.h"
@@ -62,6 +63,7 @@ LoadedScene ChartOptions::load() const {
   LoadedScene loaded = load_scene(read_scene(scene_file()));
   for (const std::string& note : loaded.notes) fmt::print(stderr, "note: {}\n", note);
   if (loaded.garments.empty()) throw InputError(loaded.file, "/garments", "none", "garments to measure");
+  if (loaded.settings.uneven_mm == 0.0) loaded.settings.uneven_mm = 1e3 * cloth::k_unevenness;
   return loaded;
 }
 

@@ -5,6 +5,7 @@
 #include "rig/text.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <fmt/format.h>
 #include <functional>
 #include <new>
@@ -61,6 +62,12 @@ int run_program_on_file(CLI::App& app, const std::filesystem::path& file, const 
         app.parse(words);
       },
       status);
+}
+
+void print_warning(const std::string& warning) {
+  if (warning.empty()) return;
+  std::fflush(stdout);
+  fmt::print(stderr, "tutu: warning: {}\n", plain_text(warning, '?'));
 }
 
 } // namespace tutu::app

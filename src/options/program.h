@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <string>
 
 namespace tutu::app {
 
@@ -15,5 +16,8 @@ inline constexpr int k_bad_input = 2; ///< bad usage or input
 int run_program(CLI::App& app, int argc, const char* const* argv, const int& status);
 /// The same with the words of a JSON file (a list of strings) for arguments.
 int run_program_on_file(CLI::App& app, const std::filesystem::path& file, const int& status);
+
+/// The last line of a run, on stderr and after all that went to stdout: "tutu: warning: ...". Nothing for "".
+void print_warning(const std::string& warning);
 
 } // namespace tutu::app

@@ -1,5 +1,6 @@
 #include "src/run/session.h"
 
+#include "cloth/garment/uneven.h"
 #include "src/base/stopwatch.h"
 
 namespace tutu::app {
@@ -9,7 +10,12 @@ Session::Session(const Scene& scene)
 
 void Session::start(const GarmentPositions& garment_positions) {
   rig::pose_at(scene_->motion, scene_->character.skeleton, 0.0, local_, world_);
-  Runtime::start(world_, garment_positions);
+  if (scene_->settings.uneven_mm == 0.0) return Runtime::start(world_, garment_positions);
+  GarmentPositions uneven = garment_positions;
+  std::mt19937_64 random(static_cast<std::uint64_t>(scene_->settings.seed));
+  for (std::size_t g = 0; g < uneven.size(); ++g)
+    cloth::make_uneven(scene_->garments[g], 1e-3 * scene_->settings.uneven_mm, random, uneven[g]);
+  Runtime::start(world_, uneven);
 }
 
 void Session::jump(double time) {

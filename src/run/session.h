@@ -11,7 +11,8 @@ class Session : public Runtime {
 public:
   explicit Session(const Scene& scene);
 
-  /// Back to time 0 (the clip's start); garments at rest at these positions, one vector a garment (world, m).
+  /// Back to time 0 (the clip's start); garments at rest at these positions, one vector a garment (world, m), or as far
+  /// off them as the scene's settings want (RunSettings::uneven_mm).
   void start(const GarmentPositions& garment_positions);
 
   /// Jumps to `time`: the body takes its pose there; garments as in Runtime::jump().

@@ -14,6 +14,10 @@ struct RunSettings : cloth::SolverOptions {
   bool adaptive_substeps = true; ///< and more where something moves too fast for them
   int threads = 1;               ///< that step garments side by side; never more than there are garments
   proxies::Backend backend = proxies::Backend::hybrid;
+  /// How far free particles of a Session start from where they were put, at most, mm along each axis
+  /// (cloth::make_uneven), as the seed has it. Nothing else in a run is random.
+  double uneven_mm = 0.0;
+  int seed = 1;
 
   double frame_seconds() const { return 1.0 / frames_per_second; }
   bool operator==(const RunSettings&) const = default;

@@ -39,6 +39,11 @@ constexpr SettingRow with_fractions(SettingRow row) {
   return row;
 }
 
+constexpr SettingRow repeating(SettingRow row) {
+  row.repeats = true;
+  return row;
+}
+
 constexpr SettingRow except_for_drapes(SettingRow row, double (*drapes)(const Settings&)) {
   row.drapes = drapes;
   return row;
@@ -77,6 +82,15 @@ constexpr SettingRow k_table[] = {
                                     "threads that step garments side by side; the result is the same", "{} threads"},
                                    1, k_most_threads),
         nullptr),
+    except_for_drapes(
+        with_fractions(number<&Settings::uneven_mm>(
+            {"uneven_mm", "solver", "uneven_mm",
+             "how far free particles start off their drape, at most, mm along each axis", "uneven by {} mm"},
+            0, 100)),
+        nullptr),
+    repeating(except_for_drapes(
+        number<&Settings::seed>({"seed", "solver", "seed", "which uneven start that is", "seed {}"}, 1, 1'000'000),
+        nullptr)),
 };
 
 std::string_view kind_of(const cloth::Garment& garment) {

@@ -20,11 +20,12 @@ namespace tutu::app {
 /// Values are numbers here: of a number itself, of a choice the place in `names`, of a switch 0 or 1. All are whole but
 /// those of a row that says otherwise.
 struct SettingRow {
-  const char* name;                        ///< in settings files, of --split and in charts; as an option with - for _
-  const char* section;                     ///< of a scene file, and
-  const char* key;                         ///< in there
-  const char* words;                       ///< what it is
-  const char* said;                        ///< what people call a value: a format for its text
+  const char* name;    ///< in settings files (not where it `repeats`), of --split and in charts; as an option
+                       ///< with - for _
+  const char* section; ///< of a scene file, and
+  const char* key;     ///< in there
+  const char* words;   ///< what it is
+  const char* said;    ///< what people call a value: a format for its text
   std::span<const std::string_view> names; ///< of a choice; else none
   int least = 0, most = 1;
   double (*get)(const RunSettings&) = nullptr;
@@ -32,6 +33,7 @@ struct SettingRow {
   /// What of it cloth that settles depends on; null: nothing.
   double (*drapes)(const RunSettings&) = nullptr;
   bool has_fractions = false; ///< of a number: 29.97
+  bool repeats = false;       ///< runs that differ in it alone are runs of one setting: charts take several of each
 
   bool is_choice() const { return !names.empty(); }
   bool is_switch() const { return names.empty() && least == 0 && most == 1; }

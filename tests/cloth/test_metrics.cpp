@@ -77,24 +77,76 @@ TEST(Metrics, PercentilesOfAFewAreExactAndOfManyBounded) {
   }
 }
 
-TEST(Metrics, PenetrationIsTheDeepestOverAllColliders) {
-  Garment garment;
-  garment.rest_positions.resize(3);
-  garment.pins = {{2, 0}};
-  Particles particles;
-  particles.positions = {{0.05, 0, 0}, {5, 0, 0}, {0, 0, 0}};
-  const std::vector<proxies::Capsule> colliders = {{{0, 0, 0}, {0, 0, 0}, 0.1}, {{0, 0, 0}, {1, 0, 0}, 0.08}};
-  const std::vector<double> depths = penetration_of(garment, particles, colliders, std::nullopt);
-  ASSERT_EQ(depths.size(), 2u) << "the pinned particle does not count";
-  EXPECT_NEAR(depths[0], 0.08, 1e-15);
-  EXPECT_EQ(depths[1], 0.0);
+/// 3 x 3 particles of a metre a cell; the first row held.
+Garment held_sheet() {
+  GarmentDescription description;
+  description.shape = GridShape{3, 3, {0, 0, 0}, {2, 0, 0}, {0, -2, 0}};
+  description.attachments = {{"stage", 0, 0, 0, -1}};
+  return build_garment(description);
+}
+
+TEST(Metrics, ThreadsLongerAndShorterAndHeldAreKeptApart) {
+  const Garment garment = held_sheet();
+  const MeasuredParts parts(garment);
+  EXPECT_EQ(parts.held_threads.size(), 2u);
+  EXPECT_EQ(parts.free_threads.size(), 10u);
+  EXPECT_EQ(parts.free_triangles.size(), garment.triangles.size());
+  Particles particles{garment.rest_positions, {}};
+  EXPECT_EQ(longest_thread(parts, particles.positions).longer, 0.0);
+
+  particles.positions[7].y() -= 1.5; // of the middle column: the thread above it is 2.5 m, those beside it too
+  particles.positions[0].x() -= 3.0; // held: four metres from its neighbour, and the free thread below it is longer
+  const std::vector<double> strains = strains_of(garment, particles);
+  ThreadStrainGatherer gatherer;
+  gatherer.add(parts, particles.positions);
+  for (const ThreadStrains& found : {thread_strains(parts, particles.positions), gatherer.strains()}) {
+    EXPECT_NEAR(found.longer.max, std::sqrt(10.0) - 1.0, 1e-15);
+    EXPECT_NEAR(found.held_longer.max, 3.0, 1e-15);
+    EXPECT_NEAR(found.held_longer.mean, 1.5, 1e-15);
+    EXPECT_EQ(found.shorter.max, 0.0);
+  }
+  const LongestThread longest = longest_thread(parts, particles.positions);
+  EXPECT_NEAR(longest.longer, std::sqrt(10.0) - 1.0, 1e-15);
+  EXPECT_EQ(std::minmax(longest.i, longest.j), std::minmax(0, 3));
+  EXPECT_EQ(*std::max_element(strains.begin(), strains.end()), 3.0) << "all threads, held ones among them";
+
+  particles.positions[8] = particles.positions[5] + Vec3(0, -0.25, 0); // the last thread of the last column
+  const ThreadStrains pressed = thread_strains(parts, particles.positions);
+  EXPECT_NEAR(pressed.shorter.max, 0.75, 1e-15);
+  EXPECT_NEAR(pressed.shorter.mean, 0.075, 1e-15);
+}
+
+TEST(Metrics, GatheredStrainsAreThoseOfAllFrames) {
+  const Garment garment = held_sheet();
+  const MeasuredParts parts(garment);
+  std::mt19937_64 random(11);
+  std::normal_distribution<double> noise(0.0, 0.3);
+  ThreadStrainGatherer gatherer;
+  std::vector<double> longer, shorter;
+  for (int frame = 0; frame < 50; ++frame) {
+    Particles particles{garment.rest_positions, {}};
+    for (Vec3& p : particles.positions) p += Vec3(noise(random), noise(random), noise(random));
+    gatherer.add(parts, particles.positions);
+    const std::vector<double> strains = strains_of(garment, particles);
+    for (const int k : parts.free_threads) {
+      longer.push_back(std::max(strains[k], 0.0));
+      shorter.push_back(std::max(-strains[k], 0.0));
+    }
+  }
+  for (const auto& [found, samples] :
+       {std::pair(gatherer.strains().longer, longer), std::pair(gatherer.strains().shorter, shorter)}) {
+    const Spread exact = spread(samples);
+    EXPECT_EQ(found.max, exact.max);
+    EXPECT_NEAR(found.mean, exact.mean, 1e-12);
+    EXPECT_NEAR(found.p99, exact.p99, 0.011 * exact.p99);
+  }
 }
 
 TEST(Metrics, JitterIsTheSecondDifference) {
   Garment garment;
   garment.rest_positions.resize(2);
   const std::vector<Vec3> a = {{0, 0, 0}, {1, 0, 0}}, b = {{0, 0, 0}, {2, 0, 0}}, c = {{0, 1e-4, 0}, {3, 0, 0}};
-  EXPECT_NEAR(jitter_of(garment, a, b, c, 1.0 / 60.0), 0.5 * 1e-4 * 3600.0, 1e-12);
+  EXPECT_NEAR(jitter_of(MeasuredParts(garment), a, b, c, 1.0 / 60.0), 0.5 * 1e-4 * 3600.0, 1e-12);
 }
 
 TEST(StateHash, SeesEveryBitAndTheOrder) {

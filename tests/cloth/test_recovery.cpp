@@ -208,7 +208,7 @@ Outcome swing(const Garment& garment, const std::function<std::unique_ptr<Solver
     EXPECT_FALSE(cloth.step(input, *brute()).has_value()) << "frame " << f;
     outcome.recoveries += cloth.recovery().has_value();
   }
-  std::vector<double> lengthening = stretch_of(garment, cloth.particles());
+  std::vector<double> lengthening = strains_of(garment, cloth.particles());
   for (double& s : lengthening) s = std::max(0.0, s);
   outcome.stretch = spread(std::move(lengthening)).p99;
   outcome.hash = state_hash(cloth.particles());
@@ -277,7 +277,7 @@ TEST(Recovery, EdgesAreDrawnInFromAnywhere) {
     if (!pinned[i]) positions[i] = Vec3(anywhere(random), 1.0 + anywhere(random), anywhere(random));
   draw_in_edges(garment, positions);
   Particles particles{positions, {}};
-  EXPECT_LE(spread(stretch_of(garment, particles)).max, k_mended_stretch + 1e-9);
+  EXPECT_LE(spread(strains_of(garment, particles)).max, k_mended_stretch + 1e-9);
   for (const Pin& pin : garment.pins) EXPECT_EQ(positions[pin.particle], garment.rest_positions[pin.particle]);
   // What needs no mending is left alone to the bit.
   std::vector<Vec3> fine = garment.rest_positions;

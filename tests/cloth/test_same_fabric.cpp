@@ -74,7 +74,7 @@ TEST(SameFabric, SagsTheSameBetweenTwoRails_slow) {
       double lowest = 0.0;
       for (const Vec3& p : cloth.positions) lowest = std::min(lowest, p.y());
       EXPECT_NEAR(lowest, -0.0763, 0.0003) << name << ", " << setting;
-      EXPECT_LT(spread(stretch_of(garment, cloth)).p99, 0.001) << name << ", " << setting;
+      EXPECT_LT(spread(strains_of(garment, cloth)).p99, 0.001) << name << ", " << setting;
     }
 }
 

@@ -147,7 +147,7 @@ TEST(Xpbd, StiffThreadsHoldAtAnyResolution) {
     FrameInput input;
     input.substeps = 10;
     run(cloth, garment, input, 120);
-    EXPECT_LT(spread(stretch_of(garment, cloth.particles())).max, 0.01) << n;
+    EXPECT_LT(spread(strains_of(garment, cloth.particles())).max, 0.01) << n;
   }
 }
 

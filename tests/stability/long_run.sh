@@ -60,7 +60,7 @@ if run["diverged"]:
 if max(late) - late[0] > most_growth:
     wrong.append(f"memory grew by {max(late) - late[0]} KiB after the first tenth; at most {most_growth} is allowed")
 print(f"{run['frames']} frames, {run['recoveries']} recoveries, {run['teleports']} jumps, "
-      f"{run['substeps']['frames_split']} frames in more substeps, stretch {run['stretch']}, "
+      f"{run['substeps']['frames_split']} frames in more substeps, longer {run['longer_pct']} %, "
       f"penetration {run['penetration_mm']}, ms {run['ms_per_frame']['total']}, hash {run['state_hash']}")
 sys.exit("\n".join(wrong))
 END

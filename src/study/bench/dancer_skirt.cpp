@@ -173,6 +173,11 @@ DancerSkirt::DancerSkirt(const DancerSkirtSetup& setup)
       pins_start_(skirt_->pins.size()), pins_end_(skirt_->pins.size()) {
   pose_dancer(0.0, setup_.motion, proxies_end_);
   dancer_pins(*skirt_, 0.0, setup_.motion, pins_end_);
+  if (setup_.uneven_mm == 0.0) return;
+  std::vector<Vec3> start = skirt_->rest_positions;
+  std::mt19937_64 random(static_cast<std::uint64_t>(setup_.seed));
+  cloth::make_uneven(*skirt_, 1e-3 * setup_.uneven_mm, random, start);
+  solver_->reset(start);
 }
 
 std::optional<cloth::Divergence> DancerSkirt::advance() {

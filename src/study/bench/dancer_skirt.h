@@ -5,6 +5,7 @@
 // state from t = f/60 to t = (f + 1)/60. m, kg, s.
 #pragma once
 
+#include "cloth/garment/uneven.h"
 #include "cloth/solver.h"
 #include "proxies/query/collision_query.h"
 #include "src/run/settings.h"
@@ -49,9 +50,12 @@ inline constexpr double k_dancer_friction = 0.3; ///< cloth against every proxy;
 /// grow with n, as the time a wave needs from one particle to the next shrinks.
 int default_substeps(cloth::SolverKind solver, int n);
 
-/// Of the settings those of the solver, the backend and the substeps count.
+/// Of the settings those of the solver, the backend, the substeps and the uneven start count.
 struct DancerSkirtSetup : RunSettings {
-  DancerSkirtSetup() { substeps = default_substeps(solver, n); }
+  DancerSkirtSetup() {
+    substeps = default_substeps(solver, n);
+    uneven_mm = 1e3 * cloth::k_unevenness;
+  }
 
   int n = 30;
   DancerMotion motion = DancerMotion::dance;

@@ -29,6 +29,13 @@ json json_of(const CrossingTally& tally) {
   return {{"frames", tally.frames}, {"worst", tally.worst}, {"total", tally.total}};
 }
 
+/// Of a variant's runs the longest thread and the deepest point that any ended with.
+void worse_of(GarmentEnd& worst, const GarmentEnd& other) {
+  worst.garment = other.garment;
+  if (other.longest.longer > worst.longest.longer) worst.longest = other.longest;
+  if (!worst.in_proxies || other.in_proxies->depth > worst.in_proxies->depth) worst.in_proxies = other.in_proxies;
+}
+
 /// The worst of a variant's runs.
 struct Worst {
   StabilityRun run;
@@ -49,9 +56,11 @@ struct Worst {
       (run.*tally).total += (other.*tally).total;
     }
     run.recoveries += other.recoveries;
-    for (double StabilityRun::*figure : {&StabilityRun::stretch, &StabilityRun::worst_stretch, &StabilityRun::depth,
-                                         &StabilityRun::deepest, &StabilityRun::speed})
+    for (double StabilityRun::*figure :
+         {&StabilityRun::longer_p99, &StabilityRun::longer_max, &StabilityRun::depth, &StabilityRun::surface,
+          &StabilityRun::deepest, &StabilityRun::speed})
       run.*figure = std::max(run.*figure, other.*figure);
+    worse_of(run.left, other.left);
     run.most_substeps = std::max(run.most_substeps, other.most_substeps);
     ms.push_back(other.ms);
   }
@@ -61,10 +70,10 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
   const StabilityRun& run = worst.run;
   const double ms = cloth::percentile(worst.ms, 0.5);
   report.text +=
-      fmt::format("{:<30}{:>3} of {} pass{:>7} crossings{:>7} pierced   stretch p99 {:>6.2f} %   depth {:>5.2f} "
-                  "mm   {:>5.2f} m/s   {:>3} recoveries   {:>3} substeps at most   {:.2f} ms\n",
-                  name, worst.passed, worst.runs, run.crossings, run.pierced, 100.0 * run.stretch, 1e3 * run.depth,
-                  run.speed, run.recoveries, run.most_substeps, ms);
+      fmt::format("{:<30}{:>3} of {} pass{:>7} crossings{:>7} pierced   longer p99 {:>6.2f} %   depth {:>5.2f} "
+                  "mm, surface {:>5.2f} mm   {:>5.2f} m/s   {:>3} recoveries   {:>3} substeps at most   {:.2f} ms\n",
+                  name, worst.passed, worst.runs, run.crossings, run.pierced, 100.0 * run.longer_p99, 1e3 * run.depth,
+                  1e3 * run.surface, run.speed, run.recoveries, run.most_substeps, ms);
   const auto standing = [](const CrossingTally& tally) {
     return fmt::format("{} frames, {} places in one at worst, {} in all", tally.frames, tally.worst, tally.total);
   };
@@ -80,8 +89,9 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
        {"crossings", run.crossings},
        {"pierced", run.pierced},
        {"through", {{"limbs", json_of(run.limbs)}, {"itself", json_of(run.itself)}}},
-       {"stretch_pct", {{"p99", 100.0 * run.stretch}, {"max", 100.0 * run.worst_stretch}}},
+       {"longer_pct", {{"p99", 100.0 * run.longer_p99}, {"max", 100.0 * run.longer_max}}},
        {"pen_mm", {{"max", 1e3 * run.depth}}},
+       {"surface_mm", {{"max", 1e3 * run.surface}}},
        {"deepest_mm", 1e3 * run.deepest},
        {"speed", run.speed},
        {"recoveries", run.recoveries},
@@ -95,6 +105,8 @@ StabilityReport report_scenes(const StabilityFamily& family, const RunSettings& 
                               const std::function<bool()>& go_on) {
   StabilityReport report;
   report.json = head_of(family.name, setup);
+  report.json["uneven_mm"] = 1e3 * k_stability_uneven;
+  report.json["seeds"] = {{"first", 1}, {"last", runs}};
   report.text = fmt::format("{}: {}\n", family.name, family.what);
   report.passed = true;
   std::uint64_t all = cloth::state_hash({});
@@ -111,8 +123,11 @@ StabilityReport report_scenes(const StabilityFamily& family, const RunSettings& 
       all = cloth::state_hash(run.end, all);
     }
     report.passed = report.passed && worst.passed == runs;
-    if (worst.runs > 0) tell(name, worst, hash, report);
+    if (worst.runs == 0) continue;
+    tell(name, worst, hash, report);
+    report.end.garments.push_back(worst.run.left);
   }
+  report.json["end"] = report.end.json();
   report.json["state_hash"] = hex(all);
   return report;
 }

@@ -3,6 +3,7 @@
 
 #include "cloth/solver.h"
 #include "src/measure/crossings.h"
+#include "src/measure/run_end.h"
 #include "src/run/settings.h"
 #include "src/study/bench/crossings.h"
 #include "src/study/bench/stability_scenes.h"
@@ -13,19 +14,21 @@
 namespace tutu::app {
 
 struct StabilityRun {
-  int frames = 0;             ///< done
-  std::string failure;        ///< why it stopped early; empty when it did not
-  int crossings = 0;          ///< CrossingCounter
-  int pierced = 0;            ///< triangles, summed over frames
-  int pierced_at_end = 0;     ///< triangles
-  CrossingTally limbs;        ///< places where cloth stands in limbs (GarmentSurface), in the frames looked at
-  CrossingTally itself;       ///< and in itself
-  double stretch = 0.0;       ///< p99 of the lengthening of grid edges, at the end
-  double worst_stretch = 0.0; ///< of any edge in any frame
-  double depth = 0.0;         ///< m, of the deepest particle, at the end
-  double deepest = 0.0;       ///< m, of any surface sample (frame_metrics.h) in the frames looked at
-  double speed = 0.0;         ///< m/s, of the fastest particle, at the end
-  double turn_rate = 0.0;     ///< rad/s about the vertical axis through the origin, at the end, of the cloth as a whole
+  int frames = 0;          ///< done
+  std::string failure;     ///< why it stopped early; empty when it did not
+  int crossings = 0;       ///< CrossingCounter
+  int pierced = 0;         ///< triangles, summed over frames
+  int pierced_at_end = 0;  ///< triangles
+  CrossingTally limbs;     ///< places where cloth stands in limbs (GarmentSurface), in the frames looked at
+  CrossingTally itself;    ///< and in itself
+  double longer_p99 = 0.0; ///< of free threads (cloth/metrics.h), at the end
+  double longer_max = 0.0; ///< of any of them in any frame
+  double depth = 0.0;      ///< m, of the deepest particle, at the end
+  double surface = 0.0;    ///< m, of the deepest sample of a triangle, at the end
+  double deepest = 0.0;    ///< m, of any such sample in the frames looked at
+  GarmentEnd left;         ///< at the end, in the colliders
+  double speed = 0.0;      ///< m/s, of the fastest particle, at the end
+  double turn_rate = 0.0;  ///< rad/s about the vertical axis through the origin, at the end, of the cloth as a whole
   int recoveries = 0;
   int most_substeps = 0;
   double ms = 0.0; ///< a frame, of the thread's time, in the middle

@@ -1,5 +1,6 @@
 #include "src/study/bench/stability_scenes.h"
 
+#include "cloth/garment/uneven.h"
 #include "src/study/bench/mesh_sheet.h"
 
 #include <algorithm>
@@ -68,15 +69,10 @@ std::vector<Vec3> pins_at_rest(const cloth::Garment& garment) {
   return pins;
 }
 
-/// Where particles are at rest, the free ones off by up to k_stability_jitter.
-std::vector<Vec3> jittered(const cloth::Garment& garment, std::vector<Vec3> positions, std::mt19937_64& random) {
-  const std::vector<std::uint8_t> pinned = cloth::pinned_flags(garment);
-  // Not std::uniform_real_distribution, whose numbers are each library's own.
-  const auto shift = [&] { return k_stability_jitter * (2.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1.0); };
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const double x = shift(), y = shift(), z = shift();
-    if (!pinned[i]) positions[i] += Vec3(x, y, z);
-  }
+/// At rest, the free particles off by up to k_stability_uneven.
+std::vector<Vec3> uneven(const cloth::Garment& garment, std::mt19937_64& random) {
+  std::vector<Vec3> positions = garment.rest_positions;
+  cloth::make_uneven(garment, k_stability_uneven, random, positions);
   return positions;
 }
 
@@ -105,7 +101,7 @@ StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed) {
     scene.name += fmt::format(", {:g} mm into {:g} mm", 1e3 * leg.radius, 1e3 * leg.thickness);
   scene.garment = hanging_sheet(24, 0.6, k_top, leg.weave);
   scene.garment.fabric.thickness = leg.thickness;
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   const double end = k_begin + (k_to - k_from) / leg.speed;
   scene.seconds = end + 3.0;
   scene.looks = static_cast<int>(std::ceil(leg.speed / k_stability_frames_per_second / leg.radius));
@@ -130,7 +126,7 @@ StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed) {
   scene.name = fmt::format("coarse-cells{} {:g} {}", suffix_of(cells.weave), cells.cell / (2.0 * cells.radius),
                            cells.along_warp ? "along" : "across");
   scene.garment = hanging_sheet(k_particles, size, top, cells.weave);
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   scene.seconds = end + 2.0;
   const double middle = top - 0.5 * size;
   const Vec3 a = cells.along_warp ? Vec3(0, top - 0.3 * size, 0) : Vec3(-0.7 * size, middle, 0);
@@ -158,7 +154,7 @@ StabilityScene start_inside(const StartInside& arm, std::uint64_t seed) {
   StabilityScene scene;
   scene.name = arm.axis_within ? "start-inside, arm within" : "start-inside, arm outside";
   scene.garment = tube(20, 32, {1.5, tube_radius, 1.0, tube_radius}, false);
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   const double angle = 2.0 * k_pi * unit(random);
   const double from_axis = tube_radius + (arm.axis_within ? -off_the_wall : off_the_wall);
   const Vec3 foot(from_axis * std::sin(angle), 0, from_axis * std::cos(angle));
@@ -183,7 +179,7 @@ StabilityScene teleport(bool told, std::uint64_t seed) {
   StabilityScene scene;
   scene.name = told ? "teleport, told" : "teleport, not told";
   scene.garment = tube(20, 40, {1.0, 0.16, 0.5, 0.30}, false);
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   scene.seconds = 3.0;
   scene.limits.crossings = told; // what flies through the air at 300 m/s may pass on either side
   if (told) scene.told_jump_frame = k_frame;
@@ -236,7 +232,7 @@ StabilityScene flattened(bool upright, std::uint64_t seed) {
   scene.name = upright ? "flattened upright" : "flattened level";
   scene.garment = tube(20, 32, {k_top, 0.12, 1.0, 0.2}, false);
   // Along the wall first, across it not at all: in one plane to the bit.
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   const std::vector<std::uint8_t> pinned = cloth::pinned_flags(scene.garment);
   for (std::size_t i = 0; i < scene.start.size(); ++i) {
     if (pinned[i]) continue;
@@ -257,7 +253,7 @@ StabilityScene twist(std::uint64_t seed) {
   // (some 10 % of stretch) for ever.
   constexpr double k_bend = 1e-4; // N m
   scene.garment = tube(24, 32, {k_top, 0.1, k_top - k_length, 0.1}, true, k_bend);
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   scene.seconds = 7.0;
   scene.pose = [pinned = pins_at_rest(scene.garment)](double t, std::vector<Capsule>&, std::vector<Vec3>& pins) {
     const double turned = soft_ramp(t, 0.0, 2.0) - soft_ramp(t, 2.0, 4.0);
@@ -280,7 +276,7 @@ StabilityScene funnel(std::uint64_t seed) {
   description.shape = cloth::GridShape{26, 26, {-0.25, 1.05, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}};
   description.fabric = stage_fabric();
   scene.garment = cloth::build_garment(description);
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   scene.friction = 0.5;
   scene.seconds = 5.0;
   scene.pose = [](double, std::vector<Capsule>& capsules, std::vector<Vec3>&) {
@@ -305,7 +301,7 @@ StabilityScene rotating_sphere(double friction, std::uint64_t seed) {
   description.fabric = stage_fabric();
   description.fabric.drag = 0.2; // the air stands still and would hold the cloth back
   scene.garment = cloth::build_garment(description);
-  scene.start = jittered(scene.garment, scene.garment.rest_positions, random);
+  scene.start = uneven(scene.garment, random);
   scene.friction = friction;
   // Without friction the sheet glides off in the end: it is judged while it lies on top.
   scene.seconds = friction > 0.0 ? 4.0 : 1.0;

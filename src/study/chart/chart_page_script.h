@@ -16,9 +16,11 @@ th{cursor:pointer;color:#59616e}tbody tr{cursor:pointer}tbody tr:hover{backgroun
 
 inline constexpr const char* k_chart_page_script = R"(
 const columns = [['ms_p99','ms p99'],['ms_median','ms median'],['trajectory_mm_rms','first s, mm'],
-  ['drape_mm_rms','drape, mm'],['drape_mm_hausdorff','Hausdorff, mm'],['in_body_mm_anywhere','in body, mm'],
-  ['in_body_mm_p99','p99'],['in_proxies_mm_max','in proxies, mm'],['missed_contacts','missed'],
-  ['false_contacts','false'],['stretch_p99','stretch p99'],['jitter','jitter, m/s2'],['energy_drift_mj','drift, mJ'],
+  ['drape_mm_rms','drape, mm'],['drape_mm_hausdorff','Hausdorff, mm'],['in_body_mm_surface','surface in body, mm'],
+  ['in_body_mm_p99','particles in body p99, mm'],['in_proxies_mm_surface','surface in proxies, mm'],
+  ['in_proxies_mm_max','particles in proxies, mm'],['missed_contacts','missed'],
+  ['false_contacts','false'],['longer_pct_p99','longer p99, %'],['longer_pct_max','longest, %'],
+  ['shorter_pct_p99','shorter p99, %'],['jitter','jitter, m/s2'],['energy_drift_mj','drift, mJ'],
   ['most_substeps','most substeps'],['colliders','colliders'],['particles','particles']];
 const colour = p => p.setting.backend === 'mesh' ? '#009e73' : p.setting.solver === 'mass_spring' ? '#d55e00'
   : p.setting.features === 'particles' ? '#56b4e9' : '#0072b2';

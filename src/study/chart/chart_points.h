@@ -19,10 +19,8 @@ struct ErrorAxis {
 };
 const std::vector<ErrorAxis>& error_axes();
 
-/// mm. Cloth that ends a frame deeper in the true body has gone through it, whatever the rest of its figures: a setting
-/// that leaves out what the body is made of would else be among the fastest and the least stretched.
-inline constexpr double k_through_body_mm = 20.0;
-
+/// A run whose cloth is deeper than k_most_depth (run_end.h) in the true body in any frame has failed: a setting that
+/// leaves out what the body is made of would else be among the fastest, and its threads the least long.
 struct ChartPoint {
   std::vector<Row> rows; ///< of its runs
   std::string name;      ///< what a person called it, or how it differs from the default

@@ -88,8 +88,8 @@ private:
     if (!go_on()) return;
     const int substeps = plan_->substeps[k];
     const LoadedScene scene = with_setting(*scene_, reference_setting(*scene_, *plan_, substeps));
-    const CellStart cell{start_at_resolution(*scene_, start, plan_->resolution), 0};
-    CellRun run = run_cell(scene, cell, plan_->protocol, false, [&](const CellRun&) { return go_on(); });
+    CellRun run = run_cell(scene, start_at_resolution(*scene_, start, plan_->resolution), plan_->protocol, false,
+                           [&](const CellRun&) { return go_on(); });
     if (run.stopped) return;
     const std::string trouble = run.recoveries > 0 ? fmt::format("{} frames diverged", run.recoveries) : run.failure;
     if (!trouble.empty())
@@ -132,6 +132,8 @@ std::string reference_fingerprint(const LoadedScene& scene, const ReferencePlan&
   ContentHash hash;
   hash.add(std::string_view(TUTU_VERSION));
   hash.add(drape_fingerprint(scene));
+  hash.add(scene.settings.uneven_mm);
+  hash.add(static_cast<std::uint64_t>(scene.settings.seed));
   const rig::Mesh& mesh = scene.character.mesh;
   for (const Vec3f& p : mesh.positions) hash.add(Vec3(p.cast<double>()));
   for (const rig::Triangle& t : mesh.triangles)

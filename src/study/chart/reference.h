@@ -38,8 +38,8 @@ struct Reference {
   Trajectory trajectory;
 };
 
-/// Hash of all that a reference depends on: body, motion, garments, ground, the drape all runs start from, and the
-/// plan.
+/// Hash of all that a reference depends on: body, motion, garments, ground, the drape all runs start from, how
+/// uneven its own start is, and the plan.
 std::string reference_fingerprint(const LoadedScene& scene, const ReferencePlan& plan);
 
 /// The setting that makes level `substeps` of the truth.

@@ -3,6 +3,7 @@
 #include "rig/error.h"
 #include "rig/io/file_io.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
@@ -53,10 +54,19 @@ private:
 };
 
 void check_header(const std::filesystem::path& file, std::string_view line) {
-  if (values_of_csv(line) == row_columns()) return;
-  throw InputError(file.string(), "line 1", '"' + std::string(line.substr(0, 60)) + "...\"",
-                   "the columns of this version (" + std::to_string(row_columns().size()) +
-                       "); move the file away to begin anew");
+  const auto found = values_of_csv(line);
+  if (found == row_columns()) return;
+  std::size_t first = 0; // that is another
+  while (found && first < std::min(found->size(), row_columns().size()) && (*found)[first] == row_columns()[first])
+    ++first;
+  const auto name = [first](const std::vector<std::string>& columns) {
+    return first < columns.size() ? '"' + columns[first].substr(0, 60) + '"' : std::string("no more");
+  };
+  throw InputError(file.string(), "line 1",
+                   found ? fmt::format("{} as column {} of {}", name(*found), first + 1, found->size())
+                         : "an open quote",
+                   fmt::format("the columns of this version ({}, here {}); move the file away to begin anew",
+                               row_columns().size(), name(row_columns())));
 }
 
 } // namespace

@@ -37,7 +37,7 @@ Row row_for(const CellTask& task) {
   row.set("name", task.setting.name);
   const SettingValues values = setting_values(task.setting);
   for (std::size_t k = 0; k < values.size(); ++k) row.set(setting_columns()[k], values[k]);
-  row.set("seed", std::to_string(task.seed));
+  row.set("seed", std::to_string(task.setting.seed));
   row.set("frames", std::to_string(task.protocol.frames));
   row.set("settle", std::to_string(task.protocol.settle));
   row.set("held", std::to_string(task.protocol.held));
@@ -58,12 +58,35 @@ const std::vector<std::string>& row_columns() {
       names.emplace_back(name);
     for (const Stage& stage : k_stages)
       for (const char* figure : {"median", "p99"}) names.push_back(fmt::format("{}_ms_{}", stage.name, figure));
-    for (const char* name : {"ms_median",           "ms_p99",         "in_proxies_mm_max",  "in_proxies_mm_p99",
-                             "in_proxies_mm_mean",  "in_body_mm_max", "in_body_mm_p99",     "in_body_mm_mean",
-                             "in_body_mm_anywhere", "in_body_share",  "missed_contacts",    "false_contacts",
-                             "stretch_max",         "stretch_p99",    "stretch_mean",       "trajectory_mm_rms",
-                             "trajectory_mm_max",   "drape_mm_rms",   "drape_mm_hausdorff", "jitter",
-                             "energy_drift_mj",     "recoveries",     "most_substeps",      "state_hash"})
+    for (const char* name : {"ms_median",
+                             "ms_p99",
+                             "in_proxies_mm_max",
+                             "in_proxies_mm_p99",
+                             "in_proxies_mm_mean",
+                             "in_proxies_mm_surface",
+                             "in_body_mm_max",
+                             "in_body_mm_p99",
+                             "in_body_mm_mean",
+                             "in_body_mm_surface",
+                             "in_body_share",
+                             "missed_contacts",
+                             "false_contacts",
+                             "longer_pct_max",
+                             "longer_pct_p99",
+                             "longer_pct_mean",
+                             "shorter_pct_max",
+                             "shorter_pct_p99",
+                             "shorter_pct_mean",
+                             "held_longer_pct_max",
+                             "trajectory_mm_rms",
+                             "trajectory_mm_max",
+                             "drape_mm_rms",
+                             "drape_mm_hausdorff",
+                             "jitter",
+                             "energy_drift_mj",
+                             "recoveries",
+                             "most_substeps",
+                             "state_hash"})
       names.emplace_back(name);
     return names;
   }();
@@ -95,7 +118,7 @@ std::string cell_key(const CellTask& task) {
   for (const std::string& value : setting_values(task.setting)) hash.add(value);
   const std::string& proxies = task.setting.proxies;
   if (proxies != k_own_proxies && proxies != k_no_proxies) hash.add(read_file(proxies));
-  hash.add(task.seed);
+  hash.add(static_cast<std::uint64_t>(task.setting.seed));
   return hash.text();
 }
 
@@ -128,15 +151,20 @@ Row row_of(const Scene& scene, const CellTask& task, const CellRun& run, const R
     row.set("in_proxies_mm_max", 1e3 * run.in_proxies.max);
     row.set("in_proxies_mm_p99", 1e3 * run.in_proxies.p99);
     row.set("in_proxies_mm_mean", 1e3 * run.in_proxies.mean);
+    row.set("in_proxies_mm_surface", 1e3 * run.surface_in_proxies);
   }
-  row.set("stretch_max", run.stretch.max);
-  row.set("stretch_p99", run.stretch.p99);
-  row.set("stretch_mean", run.stretch.mean);
+  row.set("longer_pct_max", 100.0 * run.strains.longer.max);
+  row.set("longer_pct_p99", 100.0 * run.strains.longer.p99);
+  row.set("longer_pct_mean", 100.0 * run.strains.longer.mean);
+  row.set("shorter_pct_max", 100.0 * run.strains.shorter.max);
+  row.set("shorter_pct_p99", 100.0 * run.strains.shorter.p99);
+  row.set("shorter_pct_mean", 100.0 * run.strains.shorter.mean);
+  row.set("held_longer_pct_max", 100.0 * run.strains.held_longer.max);
   if (!run.trajectory.moments.empty()) {
     row.set("in_body_mm_max", 1e3 * run.in_body.max);
     row.set("in_body_mm_p99", 1e3 * run.in_body.p99);
     row.set("in_body_mm_mean", 1e3 * run.in_body.mean);
-    row.set("in_body_mm_anywhere", 1e3 * run.deepest_in_body);
+    row.set("in_body_mm_surface", 1e3 * run.surface_in_body);
     row.set("in_body_share", run.share_in_body);
   }
   if (!run.failure.empty()) return row; // what follows is of a whole run

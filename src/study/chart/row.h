@@ -35,8 +35,7 @@ struct CellTask {
   std::string scene;     ///< its name
   std::string reference; ///< fingerprint of what it is measured against
   Protocol protocol;     ///< in frames of the scene's own rate
-  Setting setting;
-  std::uint64_t seed = 0;
+  Setting setting;       ///< its seed, too
 };
 
 /// 16 hexadecimal digits of the reference, the setting (with the content of its proxies file) and the seed.

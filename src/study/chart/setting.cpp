@@ -32,7 +32,9 @@ Setting own_setting(const RunSettings& of_scene) {
 
 const std::vector<std::string>& setting_columns() {
   static const std::vector<std::string> columns = [] {
-    std::vector<std::string> names = setting_names();
+    std::vector<std::string> names;
+    for (const SettingRow& row : settings_table())
+      if (!row.repeats) names.emplace_back(row.name);
     names.insert(names.end(), {"resolution", "proxies"});
     return names;
   }();
@@ -41,7 +43,8 @@ const std::vector<std::string>& setting_columns() {
 
 std::vector<std::string> setting_values(const Setting& s) {
   std::vector<std::string> values;
-  for (const SettingRow& row : settings_table()) values.push_back(text_of(row, row.get(s)));
+  for (const SettingRow& row : settings_table())
+    if (!row.repeats) values.push_back(text_of(row, row.get(s)));
   values.insert(values.end(), {fmt::format("{:g}", s.resolution), s.proxies});
   return values;
 }
@@ -103,6 +106,7 @@ GarmentPositions start_at_resolution(const LoadedScene& scene, const GarmentPosi
   if (resolution == 1.0) return start;
   Setting setting = own_setting(scene.settings);
   setting.resolution = resolution;
+  setting.uneven_mm = 0.0; // what is to start from here is made so
   const LoadedScene other = with_setting(scene, setting);
   GarmentPositions positions;
   for (std::size_t g = 0; g < start.size(); ++g)

@@ -23,7 +23,8 @@ struct Setting : RunSettings {
 /// A scene's own setting, named "default".
 Setting own_setting(const RunSettings& of_scene);
 
-/// Its values in words, in the order of setting_columns(): the columns of results, and what makes two settings one.
+/// Its values in words, in the order of setting_columns(): the columns of results, and what makes two settings one. The
+/// seed is none of them: runs of a setting differ in it.
 std::vector<std::string> setting_values(const Setting& setting);
 const std::vector<std::string>& setting_columns();
 

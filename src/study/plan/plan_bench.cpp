@@ -45,8 +45,8 @@ std::vector<Part> parts_of(const PlanErrors& e, const PlanLimits& l) {
   add(e.body, l.body, "in the body");
   add(e.trajectory, l.trajectory, "off the reference's first second");
   add(e.drape, l.drape, "off its settled shape");
-  parts.push_back({e.stretch / l.stretch,
-                   fmt::format("threads {:.1f} % longer ({:.1f} allowed)", 1e2 * e.stretch, 1e2 * l.stretch)});
+  parts.push_back({e.longer_p99 / l.longer_p99,
+                   fmt::format("threads {:.1f} % longer ({:.1f} allowed)", 1e2 * e.longer_p99, 1e2 * l.longer_p99)});
   return parts;
 }
 
@@ -83,7 +83,7 @@ PlanBench::PlanBench(const LoadedScene& scene, const PlanGoal& goal, const Refer
   proxies_.emplace(scene, own_runs_);
   add_guard(scene, own, own_);
 
-  limits_.stretch = std::max(goal_.most_stretch, own_.stretch); // its own cloth is not to blame for the plan
+  limits_.longer_p99 = std::max(goal_.most_longer, own_.longer_p99); // its own cloth is not to blame for the plan
   if (goal_.error == PlanError::body || goal_.error == PlanError::all) limits_.body = goal_.most;
   if (goal_.error == PlanError::trajectory) limits_.trajectory = goal_.most;
   if (goal_.error == PlanError::drape) limits_.drape = goal_.most;
@@ -116,8 +116,8 @@ PlanBench::Measured PlanBench::measure(const PlanModel& model) {
   if (excess_of(result.errors, limits_) > hopeless_) return result;
   const int every = std::max(1, static_cast<int>(scene.settings.frames_per_second / k_seldom));
   const double most = limits_.body ? k_far * hopeless_ * *limits_.body : std::numeric_limits<double>::infinity();
-  const CellRun run = run_cell(scene, {start_of(model), 0}, {goal_.frames, 0, 0, every}, true,
-                               [&](const CellRun& so_far) { return so_far.deepest_in_body <= most && go_on_(); });
+  const CellRun run = run_cell(scene, start_of(model), {goal_.frames, 0, 0, every}, true,
+                               [&](const CellRun& so_far) { return so_far.surface_in_body <= most && go_on_(); });
   add_body(run, result.errors);
   result.errors.body *= k_between;
   result.cost = cost_of(run);
@@ -139,7 +139,7 @@ PlanBench::Pair PlanBench::compare(const PlanModel& first, const PlanModel& seco
   for (int k = 0; k < pairs && go_on_(); ++k) {
     PlanCost costs[2];
     for (int side = 0; side < 2; ++side) {
-      const CellRun run = run_cell(scenes[side], {starts[side], 0}, {goal_.frames, 0, 0, goal_.frames}, false,
+      const CellRun run = run_cell(scenes[side], starts[side], {goal_.frames, 0, 0, goal_.frames}, false,
                                    [&](const CellRun&) { return go_on_(); });
       costs[side] = cost_of(run);
       medians[side].push_back(costs[side].median);
@@ -166,9 +166,9 @@ double PlanBench::skinning_ms() const {
 void PlanBench::add_guard(const LoadedScene& scene, const PlanModel& model, PlanErrors& errors) {
   if (!reference_) return;
   const GarmentPositions start = start_of(model);
-  for (int seed = 0; seed < k_guard_starts; ++seed) {
-    const CellRun run = run_cell(scene, {start, static_cast<std::uint64_t>(seed)}, guard_, false,
-                                 [&](const CellRun&) { return go_on_(); });
+  LoadedScene seeded = scene;
+  for (int k = 0; k < k_guard_starts; ++k, ++seeded.settings.seed) {
+    const CellRun run = run_cell(seeded, start, guard_, false, [&](const CellRun&) { return go_on_(); });
     if (run.stopped) return;
     if (errors.trouble = trouble_of(run); !errors.trouble.empty()) return;
     const RunErrors e = errors_against(reference_garments_, reference_->trajectory, scene.garments, run.trajectory);
@@ -181,17 +181,18 @@ std::vector<CellRun> PlanBench::run_starts(const LoadedScene& scene, const PlanM
   const GarmentPositions start = start_of(model);
   std::vector<CellRun> runs(static_cast<std::size_t>(goal_.starts));
   Workers workers(std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, goal_.starts));
-  workers.for_each(runs.size(), [&](std::size_t seed) {
-    runs[seed] =
-        run_cell(scene, {start, seed}, {goal_.frames, 0, 0, 1}, true, [&](const CellRun&) { return go_on_(); });
+  workers.for_each(runs.size(), [&](std::size_t k) {
+    LoadedScene seeded = scene;
+    seeded.settings.seed += static_cast<int>(k);
+    runs[k] = run_cell(seeded, start, {goal_.frames, 0, 0, 1}, true, [&](const CellRun&) { return go_on_(); });
   });
   return runs;
 }
 
 void PlanBench::add_body(const CellRun& run, PlanErrors& errors) {
-  errors.body = std::max(errors.body, run.deepest_in_body);
-  errors.stretch = std::max(errors.stretch, run.stretch.p99);
-  errors.stretch_max = std::max(errors.stretch_max, run.stretch.max);
+  errors.body = std::max(errors.body, run.surface_in_body);
+  errors.longer_p99 = std::max(errors.longer_p99, run.strains.longer.p99);
+  errors.longer_max = std::max(errors.longer_max, run.strains.longer.max);
   if (errors.trouble.empty()) errors.trouble = trouble_of(run);
 }
 

@@ -62,7 +62,7 @@ std::string tiles(const Validation& v) {
     const double share = p.asked > 0 ? static_cast<double>(p.inside) / static_cast<double>(p.asked) : 0.0;
     html += tile("cloth", fmt::format("{:.3f} %", 100.0 * share), "of cloth particles inside the true body");
     html += tile("cloth", fmt::format("{:.1f} mm", mm(p.deepest)),
-                 fmt::format("deepest particle; {:.1f} mm anywhere on a triangle", mm(v.cloth->deepest_of_triangles)));
+                 fmt::format("deepest particle; surface {:.1f} mm", mm(v.cloth->surface)));
   }
   return html + "</div>\n";
 }
@@ -94,12 +94,10 @@ std::string plots(const Validation& v) {
   std::string html = "<div class=\"plots\">\n" + svg_of(under) + svg_of(over);
   if (v.cloth) {
     cloth.title = "Cloth inside the true body: the deepest";
-    const auto depth = [](double ClothInBody::*member) {
-      return [member](const FrameReport& f) { return f.cloth ? (*f.cloth).*member : 0.0; };
-    };
-    cloth.series = {series("particle", k_cloth, false,
-                           [](const FrameReport& f) { return f.cloth ? f.cloth->particles.deepest : 0.0; }),
-                    series("anywhere on a triangle", k_cloth, true, depth(&ClothInBody::deepest_of_triangles))};
+    cloth.series = {
+        series("particle", k_cloth, false,
+               [](const FrameReport& f) { return f.cloth ? f.cloth->particles.deepest : 0.0; }),
+        series("surface", k_cloth, true, [](const FrameReport& f) { return f.cloth ? f.cloth->surface : 0.0; })};
     for (const int f : v.cloth->worst_frames)
       cloth.marks.push_back({v.frames[f].time, std::to_string(v.frames[f].frame)});
     html += svg_of(cloth);
@@ -190,10 +188,10 @@ std::string cloth_table(const Validation& v) {
   row("particles", c.particles);
   row("edges, at their middle", c.edges);
   row("triangles, at their centroid", c.triangles);
-  html +=
-      fmt::format("</tbody></table></div>\n<p>Deepest of 28 points on each triangle: {:.2f} mm. p99 over particles: "
-                  "{:.2f} mm.</p>\n",
-                  mm(c.deepest_of_triangles), mm(c.particles_p99));
+  html += fmt::format(
+      "</tbody></table></div>\n<p>Surface, the deepest of 28 points of each triangle: {:.2f} mm. p99 over particles: "
+      "{:.2f} mm.</p>\n",
+      mm(c.surface), mm(c.particles_p99));
   return html;
 }
 

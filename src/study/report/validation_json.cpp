@@ -1,6 +1,7 @@
 #include "src/study/report/validation_json.h"
 
 #include "rig/body_regions.h"
+#include "src/measure/uneven_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -113,7 +114,7 @@ ordered_json frame_json(const FrameReport& frame, const Validation& validation, 
     json["cloth_in_body"] = {{"particles", json_of(frame.cloth->particles)},
                              {"edges", json_of(frame.cloth->edges)},
                              {"triangles", json_of(frame.cloth->triangles)},
-                             {"triangles_28_max_mm", mm(frame.cloth->deepest_of_triangles)}};
+                             {"surface_max_mm", mm(frame.cloth->surface)}};
     json["crossings"] = crossings_json(frame.crossings, scene.garments);
   }
   return json;
@@ -153,16 +154,16 @@ std::string cloth_text(const Validation& validation) {
   const auto share = [](const DepthCount& c) {
     return c.asked > 0 ? 100.0 * static_cast<double>(c.inside) / static_cast<double>(c.asked) : 0.0;
   };
-  std::string text = fmt::format("cloth in the true body: particles {:.3f} % inside, {:.2f} mm at most, {:.2f} p99; "
-                                 "edges (middle) {:.3f} %, {:.2f} "
-                                 "mm; triangles (centroid) {:.3f} %, {:.2f} mm, {:.2f} mm at 28 points of each\n",
-                                 share(cloth.particles), mm(cloth.particles.deepest), mm(cloth.particles_p99),
-                                 share(cloth.edges), mm(cloth.edges.deepest), share(cloth.triangles),
-                                 mm(cloth.triangles.deepest), mm(cloth.deepest_of_triangles));
+  std::string text =
+      fmt::format("cloth in the true body: particles {:.3f} % inside, {:.2f} mm at most, {:.2f} p99; "
+                  "edges (middle) {:.3f} %, {:.2f} "
+                  "mm; triangles (centroid) {:.3f} %, {:.2f} mm; surface {:.2f} mm\n",
+                  share(cloth.particles), mm(cloth.particles.deepest), mm(cloth.particles_p99), share(cloth.edges),
+                  mm(cloth.edges.deepest), share(cloth.triangles), mm(cloth.triangles.deepest), mm(cloth.surface));
   if (!cloth.worst_frames.empty()) {
     text += "  deepest in frames";
     for (const int f : cloth.worst_frames)
-      text += fmt::format("  {} ({:.2f} mm)", validation.frames[f].frame, mm(validation.frames[f].cloth->deepest()));
+      text += fmt::format("  {} ({:.2f} mm)", validation.frames[f].frame, mm(validation.frames[f].cloth->surface));
     text += "\n";
   }
   return text;
@@ -265,7 +266,9 @@ ordered_json validation_json(const Validation& validation, const Scene& scene, c
                              {"particles", json_of(cloth.particles)},
                              {"edges", json_of(cloth.edges)},
                              {"triangles", json_of(cloth.triangles)},
-                             {"triangles_28_max_mm", mm(cloth.deepest_of_triangles)}};
+                             {"surface_max_mm", mm(cloth.surface)},
+                             {"end", cloth.end.json()}};
+    json["cloth_in_body"].update(uneven_json(scene.settings));
     json["cloth_in_body"]["worst_frames"] = ordered_json::array();
     for (const int f : cloth.worst_frames) json["cloth_in_body"]["worst_frames"].push_back(validation.frames[f].frame);
   }

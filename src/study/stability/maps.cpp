@@ -207,7 +207,7 @@ void add_contact_maps(const Maker& maker, const GarmentSetting& coarsest, const 
       [](const RunSettings& setup, double size, double radius, std::uint64_t seed, MapCell& cell) {
         StabilityScene scene = coarse_cells(CoarseCells{size, radius, seed % 2 == 0}, seed);
         // Contacts are what it is about: a sheet of a hand's breadth is stretched by any limb, one of metres swings on.
-        scene.limits.stretch = scene.limits.speed = std::numeric_limits<double>::infinity();
+        scene.limits.longer_p99 = scene.limits.speed = std::numeric_limits<double>::infinity();
         add_outcome(cell, outcome_of(scene, run_stability(scene, setup)));
       },
       maps);

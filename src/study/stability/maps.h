@@ -24,7 +24,7 @@ struct MapAxis {
 };
 
 struct MapCell {
-  int starts = 0;                         ///< jittered, that were run
+  int starts = 0;                         ///< uneven, that were run
   std::array<int, k_outcomes> outcomes{}; ///< how many ended so; of a map of steps, how the next larger step ended
   std::optional<double> largest_step;     ///< s, of a map of steps: the smallest of the starts'
 
@@ -48,7 +48,7 @@ struct StabilityMap {
   /// A closed form: y at which the first failure is expected, at each of x.values; empty: there is none.
   std::vector<double> bound = {};
   std::string bound_name = {};
-  /// One jittered start at (x, y), into a cell. May be called from several threads.
+  /// One uneven start at (x, y), into a cell. May be called from several threads.
   std::function<void(double x, double y, std::uint64_t seed, MapCell& cell)> run = {};
 
   MapCell& cell(std::size_t ix, std::size_t iy) { return cells[iy * x.values.size() + ix]; }

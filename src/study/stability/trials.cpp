@@ -1,5 +1,6 @@
 #include "src/study/stability/trials.h"
 
+#include "cloth/garment/uneven.h"
 #include "cloth/metrics.h"
 
 #include <algorithm>
@@ -30,11 +31,9 @@ double static_strain(const cloth::Garment& garment) {
 }
 
 std::vector<Vec3> shaken(const cloth::Garment& garment, double by, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto shift = [&] { return by * (2.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1.0); };
   std::vector<Vec3> positions = garment.rest_positions;
-  for (std::size_t i = static_cast<std::size_t>(garment.columns); i < positions.size(); ++i) // the first row is held
-    for (double& x : positions[i]) x += shift();
+  std::mt19937_64 random(seed);
+  cloth::make_uneven(garment, by, random, positions);
   return positions;
 }
 
@@ -70,9 +69,9 @@ Outcome hang(const Patch& patch, std::uint64_t seed) {
   for (int done = 0; done < steps; done += input.substeps)
     if (solver->step(input, *query)) return Outcome::diverged;
 
-  std::vector<double> stretch = cloth::stretch_of(garment, solver->particles());
+  const double longer = cloth::thread_strains(cloth::MeasuredParts(garment), solver->particles().positions).longer.p99;
   // Written so that what is no number has failed.
-  if (!(cloth::percentile(stretch, 0.99) <= k_patch_stretch + static_strain(garment))) return Outcome::stretched;
+  if (!(longer <= k_patch_longer + static_strain(garment))) return Outcome::stretched;
   for (const Vec3& v : solver->particles().velocities)
     if (!(v.norm() <= k_rest_speed)) return Outcome::unsettled;
   return Outcome::held;
@@ -103,7 +102,7 @@ Outcome outcome_of(const StabilityScene& scene, const StabilityRun& run) {
   const StabilityLimits& limits = scene.limits;
   if (!run.failure.empty()) return Outcome::diverged;
   if (run.crossings > 0 || run.pierced_at_end > 0) return Outcome::tunnelled;
-  if (!(run.stretch <= limits.stretch)) return Outcome::stretched;
+  if (!(run.longer_p99 <= limits.longer_p99)) return Outcome::stretched;
   return run.depth <= limits.depth && run.speed <= limits.speed ? Outcome::held : Outcome::unsettled;
 }
 

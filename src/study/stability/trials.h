@@ -22,10 +22,10 @@ struct Patch {
 cloth::Garment garment_of(const Patch& patch);
 
 /// Lets it hang for two seconds (or as many as k_most_patch_steps steps are) on the bare solver: nothing is taken back,
-/// no substeps are added. A sheet that is longer than its load explains by more than k_patch_stretch has failed.
+/// no substeps are added. A sheet that is longer than its load explains by more than k_patch_longer has failed.
 Outcome hang(const Patch& patch, std::uint64_t seed);
 inline constexpr int k_least_patch_steps = 200, k_most_patch_steps = 4000;
-inline constexpr double k_patch_stretch = 0.10; ///< p99 of edges, as StabilityLimits has it
+inline constexpr double k_patch_longer = 0.10; ///< p99 of threads, as StabilityLimits has it
 
 /// Where a method stops to hold when its step grows.
 struct LargestStep {

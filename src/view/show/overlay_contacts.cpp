@@ -1,7 +1,7 @@
 #include "src/view/show/overlay_contacts.h"
 
 #include "proxies/distance/signed_distance.h"
-#include "src/measure/run_stats.h"
+#include "src/measure/cloth_depths.h"
 #include "src/view/show/overlay_body.h"
 #include "src/view/show/overlay_colours.h"
 

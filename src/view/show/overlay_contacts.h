@@ -33,7 +33,8 @@ void find_touches(const cloth::Garment& garment, std::span<const Vec3> positions
                   std::vector<Touch>& touches);
 
 /// One arrow a touch, from the surface out along the normal, longer by ten times the depth. Green at the gap, orange
-/// nearer than the gap by more than k_pressed, vermilion inside the collider by more than k_inside_depth (run_stats.h).
+/// nearer than the gap by more than k_pressed, vermilion inside the collider by more than k_inside_depth
+/// (cloth_depths.h).
 inline constexpr double k_pressed = 1e-4;     // m
 inline constexpr float k_touch_arrow = 0.02f; // m
 inline constexpr float k_depth_magnified = 10.0f;

@@ -3,7 +3,7 @@
 #include "proxies/distance/signed_distance.h"
 #include "proxies/motion/collider_motion.h"
 #include "rig/error.h"
-#include "src/measure/run_stats.h"
+#include "src/measure/cloth_depths.h"
 #include "src/view/show/overlay_contacts.h"
 
 #include <algorithm>
@@ -83,7 +83,7 @@ Why explain(const Scene& scene, std::size_t garment, int particle, const FrameSt
         {spring.kind, other, spring.rest_length, (particles.positions[other] - why.position).norm()});
   }
   std::stable_sort(why.constraints.begin(), why.constraints.end(),
-                   [](const WhyConstraint& a, const WhyConstraint& b) { return a.stretch() > b.stretch(); });
+                   [](const WhyConstraint& a, const WhyConstraint& b) { return a.strain() > b.strain(); });
   return why;
 }
 
@@ -101,16 +101,16 @@ std::optional<FirstWrong> wrong_in(const Scene& scene, std::size_t garment, int 
     in = c;
   }
   if (in) return FirstWrong{now.index, collider_names(scene)[*in], deepest};
-  double worst = k_wrong_stretch;
-  bool stretched = false;
+  double worst = k_wrong_longer;
+  bool overlong = false;
   for (const cloth::Spring& spring : cloth.springs) {
     if (spring.kind != cloth::SpringKind::structural || (spring.i != particle && spring.j != particle)) continue;
-    const double stretch = (positions[spring.j] - positions[spring.i]).norm() / spring.rest_length - 1.0;
-    if (stretch <= worst) continue;
-    worst = stretch;
-    stretched = true;
+    const double strain = cloth::strain_of(spring, positions);
+    if (strain <= worst) continue;
+    worst = strain;
+    overlong = true;
   }
-  if (stretched) return FirstWrong{now.index, "stretch", worst};
+  if (overlong) return FirstWrong{now.index, "longer", worst};
   return std::nullopt;
 }
 
@@ -136,7 +136,7 @@ nlohmann::json json_of(const Why& why) {
                                    {"other", c.other},
                                    {"rest_mm", 1000.0 * c.rest},
                                    {"length_mm", 1000.0 * c.length},
-                                   {"stretch", c.stretch()}});
+                                   {"strain", c.strain()}});
   json["first_wrong"] = nullptr;
   if (why.first_wrong)
     json["first_wrong"] = {
@@ -159,12 +159,12 @@ std::vector<std::string> text_of(const Why& why) {
   constexpr std::size_t k_shown = 6; // the rest pulls less
   for (std::size_t k = 0; k < std::min(k_shown, why.constraints.size()); ++k) {
     const WhyConstraint& c = why.constraints[k];
-    lines.push_back(fmt::format("{} to {}: {:+.1f} % of {:.1f} mm", name_of_kind(c.kind), c.other, 100.0 * c.stretch(),
+    lines.push_back(fmt::format("{} to {}: {:+.1f} % of {:.1f} mm", name_of_kind(c.kind), c.other, 100.0 * c.strain(),
                                 1000.0 * c.rest));
   }
   if (!why.first_wrong) {
     lines.push_back("nothing wrong in what is recorded");
-  } else if (why.first_wrong->what == "stretch") {
+  } else if (why.first_wrong->what == "longer") {
     lines.push_back(
         fmt::format("first wrong in frame {}: {:+.1f} % long", why.first_wrong->frame, 100.0 * why.first_wrong->value));
   } else {

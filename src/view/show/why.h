@@ -8,8 +8,8 @@
 namespace tutu::app {
 
 /// A particle counts as wrong when one of its springs is longer than at rest by more than this, or when it is inside a
-/// collider by more than k_inside_depth (run_stats.h).
-inline constexpr double k_wrong_stretch = 0.10;
+/// collider by more than k_inside_depth (cloth_depths.h).
+inline constexpr double k_wrong_longer = 0.10;
 
 struct WhyContact {
   std::string collider;  ///< a proxy's name, or "ground"
@@ -28,14 +28,14 @@ struct WhyConstraint {
   int other = 0;       ///< the particle at its other end
   double rest = 0.0;   ///< m
   double length = 0.0; ///< m
-  double stretch() const { return length / rest - 1.0; }
+  double strain() const { return length / rest - 1.0; }
 };
 
 /// The first frame of a recording in which a particle went wrong.
 struct FirstWrong {
   int frame = 0;
-  std::string what;   ///< "stretch", or the collider it was inside of
-  double value = 0.0; ///< stretch, or depth in m
+  std::string what;   ///< "longer", or the collider it was inside of
+  double value = 0.0; ///< strain, or depth in m
 };
 
 struct Why {
@@ -45,14 +45,14 @@ struct Why {
   Vec3 position = Vec3::Zero(), velocity = Vec3::Zero();
   bool pinned = false;
   std::vector<WhyContact> contacts;       ///< within the gap and k_touch_slack, or met on the way; nearest first
-  std::vector<WhyConstraint> constraints; ///< the most stretched first
+  std::vector<WhyConstraint> constraints; ///< the longest beside its rest length first
   std::optional<FirstWrong> first_wrong;
 };
 
 /// `before`: the frame before `now`, or null. first_wrong is left empty.
 Why explain(const Scene& scene, std::size_t garment, int particle, const FrameState& now, const FrameState* before);
 
-/// What is wrong with the particle in this frame: the deeper collider before the stretch.
+/// What is wrong with the particle in this frame: the deeper collider before the longer thread.
 std::optional<FirstWrong> wrong_in(const Scene& scene, std::size_t garment, int particle, const FrameState& now);
 
 nlohmann::json json_of(const Why& why); ///< lengths in mm where the name says so

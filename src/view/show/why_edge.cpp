@@ -34,7 +34,7 @@ nlohmann::json json_of(const WhyEdge& why) {
                          {"frame", why.frame},
                          {"rest_mm", 1000.0 * why.rest},
                          {"length_mm", 1000.0 * why.length},
-                         {"stretch", why.stretch()},
+                         {"strain", why.strain()},
                          {"contacts", nlohmann::json::array()}};
   for (const WhyEdgeContact& c : why.contacts)
     json["contacts"].push_back({{"collider", c.collider},
@@ -48,7 +48,7 @@ nlohmann::json json_of(const WhyEdge& why) {
 std::vector<std::string> text_of(const WhyEdge& why) {
   std::vector<std::string> lines = {
       fmt::format("{}, thread from {} to {} in frame {}", why.garment, why.i, why.j, why.frame),
-      fmt::format("{:+.1f} % of {:.1f} mm", 100.0 * why.stretch(), 1000.0 * why.rest)};
+      fmt::format("{:+.1f} % of {:.1f} mm", 100.0 * why.strain(), 1000.0 * why.rest)};
   if (why.contacts.empty()) lines.push_back("touches nothing");
   for (const WhyEdgeContact& c : why.contacts)
     lines.push_back(fmt::format("{}: {:.2f} mm off, {:.2f} mm into the gap, at {:.0f} % of it", c.collider,

@@ -21,7 +21,7 @@ struct WhyEdge {
   double rest = 0.0;                    ///< m
   double length = 0.0;                  ///< m
   std::vector<WhyEdgeContact> contacts; ///< within the gap and k_touch_slack, nearest first
-  double stretch() const { return length / rest - 1.0; }
+  double strain() const { return length / rest - 1.0; }
 };
 
 /// `spring`: of the garment's.

@@ -52,7 +52,7 @@ protected:
     words.insert(words.end(), more.begin(), more.end());
     return run_program(on_scene("chart", words));
   }
-  std::map<std::string, Row> rows_by_name(const std::string& seed = "0") const {
+  std::map<std::string, Row> rows_by_name(const std::string& seed = "1") const {
     std::map<std::string, Row> rows;
     for (const Row& row : read_results(out_ / "results.csv").rows)
       if (row.text("seed") == seed) rows.emplace(row.text("name"), row);
@@ -82,12 +82,12 @@ TEST_F(ChartCommand, WhatIsBrokenOrMissingShows) {
   EXPECT_GT(figure("no proxies", "in_body_mm_max"), 5.0);
   EXPECT_GT(figure("no proxies", "missed_contacts"), 0.9);
   EXPECT_GT(figure("no proxies", "trajectory_mm_rms"), 3.0 * figure("default", "trajectory_mm_rms"));
-  for (const char* column : {"ms_p99", "ms_median", "cloth_ms_p99", "contact_ms_median", "stretch_p99", "drape_mm_rms",
-                             "drape_mm_hausdorff", "jitter", "energy_drift_mj", "false_contacts"})
+  for (const char* column : {"ms_p99", "ms_median", "cloth_ms_p99", "contact_ms_median", "longer_pct_p99",
+                             "drape_mm_rms", "drape_mm_hausdorff", "jitter", "energy_drift_mj", "false_contacts"})
     EXPECT_GE(figure("default", column), 0.0) << column;
   EXPECT_THAT(rows.at("default").text("machine"), Not(::testing::IsEmpty()));
 
-  for (const char* stem : {"trajectory", "drape", "body", "stretch"}) {
+  for (const char* stem : {"trajectory", "drape", "body", "longer"}) {
     EXPECT_THAT(read_file(out_ / fmt::format("chart-{}.png", stem)), ::testing::StartsWith("\x89PNG"));
     const std::string svg = read_file(out_ / fmt::format("chart-{}.svg", stem));
     EXPECT_THAT(svg, AllOf(HasSubstr("default"), HasSubstr("broken: diverged"), HasSubstr("Pareto front")));

@@ -39,8 +39,8 @@ TEST(BenchStability, ASceneOfStabilityWritesWhatPassed) {
   EXPECT_EQ(variant.at("passed"), 1);
   EXPECT_EQ(variant.at("crossings"), 0);
   for (const char* pointer :
-       {"/through/limbs/frames", "/through/limbs/worst", "/through/itself/total", "/stretch_pct/p99",
-        "/stretch_pct/max", "/pen_mm/max", "/deepest_mm", "/speed", "/recoveries", "/most_substeps", "/ms/median"})
+       {"/through/limbs/frames", "/through/limbs/worst", "/through/itself/total", "/longer_pct/p99", "/longer_pct/max",
+        "/pen_mm/max", "/surface_mm/max", "/deepest_mm", "/speed", "/recoveries", "/most_substeps", "/ms/median"})
     EXPECT_TRUE(variant.at(nlohmann::json::json_pointer(pointer)).is_number()) << pointer;
   EXPECT_EQ(variant.at("state_hash").get<std::string>().size(), 16u);
 }

@@ -1,4 +1,4 @@
-// What must never happen to cloth, and what it must come back from. Ten jittered starts of each scene, default
+// What must never happen to cloth, and what it must come back from. Ten uneven starts of each scene, default
 // settings.
 #include "src/study/bench/stability_run.h"
 

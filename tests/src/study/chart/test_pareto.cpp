@@ -145,11 +145,11 @@ TEST(ChartPoints, OneFailedRunFailsTheSettingAndKeepsItOffTheFront) {
 }
 
 /// With a figure on every axis.
-Row whole_row(int substeps, double ms, double trajectory, double body, double stretch) {
+Row whole_row(int substeps, double ms, double trajectory, double body, double longer) {
   Row r = row(substeps, 0, "ok", ms, trajectory);
   r.set("drape_mm_rms", 5.0);
-  r.set("in_body_mm_anywhere", body);
-  r.set("stretch_p99", stretch);
+  r.set("in_body_mm_surface", body);
+  r.set("longer_pct_p99", longer);
   return r;
 }
 

@@ -52,6 +52,25 @@ TEST_F(ResultsFile, ReadsBackWhatWasAdded) {
   EXPECT_EQ(results.rows[0].number("jitter"), std::nullopt);
 }
 
+TEST_F(ResultsFile, ColumnsOfAnotherVersionAreToldByTheFirstThatDiffers) {
+  add_row(file_, row_named("a"));
+  std::string text = read_file(file_);
+  text.replace(text.find("longer_pct_max"), 14, "stretch_max");
+  write_file(file_, text);
+  const std::string place = std::to_string(std::find(row_columns().begin(), row_columns().end(), "longer_pct_max") -
+                                           row_columns().begin() + 1);
+  for (const bool adds : {false, true}) try {
+      if (adds) add_row(file_, row_named("b"));
+      else read_results(file_);
+      ADD_FAILURE() << "an old file was taken";
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(),
+                  ::testing::AllOf(::testing::HasSubstr("line 1: found \"stretch_max\" as column " + place),
+                                   ::testing::HasSubstr("here \"longer_pct_max\""),
+                                   ::testing::HasSubstr("move the file away")));
+    }
+}
+
 TEST_F(ResultsFile, CutAnywhereItLosesTheLastRowOnly) {
   for (const char* key : {"a", "b", "c"}) add_row(file_, row_named(key, "with, a comma"));
   const std::string whole = read_file(file_);
@@ -99,7 +118,8 @@ TEST_F(ResultsFile, AFileOfOtherColumnsIsRefusedAndLeftAlone) {
       use(file_);
       ADD_FAILURE() << "accepted";
     } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("results.csv: line 1: found \"name,age...\", expected the columns"));
+      EXPECT_THAT(error.what(),
+                  HasSubstr("results.csv: line 1: found \"name\" as column 1 of 2, expected the columns"));
     }
   }
   EXPECT_EQ(read_file(file_), "name,age\nx,3\n");

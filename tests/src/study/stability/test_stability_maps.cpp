@@ -135,7 +135,7 @@ TEST(StabilityMaps, AStageOutcomeNamesWhatIsWrong) {
   EXPECT_EQ(outcome_of(scene, run), Outcome::held);
   run.speed = 2.0;
   EXPECT_EQ(outcome_of(scene, run), Outcome::unsettled);
-  run.stretch = std::nan("");
+  run.longer_p99 = std::nan("");
   EXPECT_EQ(outcome_of(scene, run), Outcome::stretched);
   run.crossings = 1;
   EXPECT_EQ(outcome_of(scene, run), Outcome::tunnelled);

@@ -1,5 +1,5 @@
 // What the overlays are made of, counted against plain loops.
-#include "src/measure/run_stats.h"
+#include "src/measure/cloth_depths.h"
 #include "src/view/show/overlay_body.h"
 #include "src/view/show/overlay_cloth.h"
 #include "src/view/show/overlay_colours.h"
@@ -98,8 +98,8 @@ TEST_F(Overlays, ALineForEachThreadAndDiagonal) {
   for (const cloth::Spring& spring : garment().springs) expected += spring.kind != cloth::SpringKind::bend;
   EXPECT_EQ(lines.size(), expected);
   EXPECT_GT(expected, 100u);
-  const std::vector<double> stretch = cloth::stretch_of(garment(), state_.garments[0]); // structural springs come first
-  for (std::size_t s = 0; s < stretch.size(); ++s) EXPECT_EQ(lines[s].colour, strain_colour(stretch[s])) << s;
+  const std::vector<double> strains = cloth::strains_of(garment(), state_.garments[0]); // structural springs come first
+  for (std::size_t s = 0; s < strains.size(); ++s) EXPECT_EQ(lines[s].colour, strain_colour(strains[s])) << s;
 }
 
 TEST(OverlayColours, StrainDarkensEvenlyEitherWay) {

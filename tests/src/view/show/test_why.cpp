@@ -61,7 +61,7 @@ TEST_F(WhyAParticle, AnEdgesContactsAreThoseOfItsNearestPoint) {
     const WhyEdge why = explain_edge(scene_, 0, static_cast<int>(k), frames[12]);
     EXPECT_EQ(why.i, spring.i);
     EXPECT_EQ(why.j, spring.j);
-    EXPECT_DOUBLE_EQ(why.stretch(), (positions[spring.j] - positions[spring.i]).norm() / spring.rest_length - 1.0);
+    EXPECT_DOUBLE_EQ(why.strain(), (positions[spring.j] - positions[spring.i]).norm() / spring.rest_length - 1.0);
     double nearest = 1e9;
     for (int n = 0; n <= 1000; ++n) {
       const Vec3 point = positions[spring.i] + 0.001 * n * (positions[spring.j] - positions[spring.i]);
@@ -139,7 +139,7 @@ TEST_F(WhyAParticle, ItsContactsAndConstraintsAreThoseOfPlainLoops) {
     for (std::size_t k = 0; k < why.constraints.size(); ++k) {
       const WhyConstraint& constraint = why.constraints[k];
       EXPECT_NEAR(constraint.length, (frames[12].garments[0].positions[constraint.other] - p).norm(), 1e-15);
-      EXPECT_LE(constraint.stretch(), why.constraints[k == 0 ? 0 : k - 1].stretch());
+      EXPECT_LE(constraint.strain(), why.constraints[k == 0 ? 0 : k - 1].strain());
     }
   }
   EXPECT_GT(touching, 5);
@@ -152,10 +152,10 @@ TEST_F(WhyAParticle, TheFirstFrameThatIsWrongIsFound) {
   for (const FrameState& frame : frames) EXPECT_FALSE(wrong_in(scene_, 0, particle, frame)) << frame.index;
   // Pulled away from all its neighbours.
   frames[3].garments[0].positions[particle] += Vec3(0, 0.2, 0);
-  const auto stretched = wrong_in(scene_, 0, particle, frames[3]);
-  ASSERT_TRUE(stretched);
-  EXPECT_EQ(stretched->frame, 3);
-  EXPECT_EQ(stretched->what, "stretch");
+  const auto overlong = wrong_in(scene_, 0, particle, frames[3]);
+  ASSERT_TRUE(overlong);
+  EXPECT_EQ(overlong->frame, 3);
+  EXPECT_EQ(overlong->what, "longer");
   double worst = 0.0;
   for (const cloth::Spring& spring : scene_.garments[0].springs)
     if (spring.kind == cloth::SpringKind::structural && (spring.i == particle || spring.j == particle))
@@ -163,8 +163,8 @@ TEST_F(WhyAParticle, TheFirstFrameThatIsWrongIsFound) {
                        (frames[3].garments[0].positions[spring.i] - frames[3].garments[0].positions[spring.j]).norm() /
                                spring.rest_length -
                            1.0);
-  EXPECT_DOUBLE_EQ(stretched->value, worst);
-  // Put into the capsule: that tells more than the stretch.
+  EXPECT_DOUBLE_EQ(overlong->value, worst);
+  // Put into the capsule: that tells more than the longer thread.
   const proxies::Capsule& trunk = frames[4].colliders_end[0];
   frames[4].garments[0].positions[particle] = 0.5 * (trunk.a + trunk.b) + Vec3(0.1, 0, 0);
   const auto inside = wrong_in(scene_, 0, particle, frames[4]);
