@@ -224,7 +224,7 @@ TEST_P(WovenRuns, GiveTheSameBitsOnAllTargetsThatFuseAndOnAllThatDoNot) {
   }
 }
 
-TEST(WovenSheets, GiveTheSameBitsInTheAirOnAllTargetsThatFuseAndOnAllThatDoNot) {
+TEST(WovenSheets, GiveTheSameBitsInTheAirOnAllTargetsThatFuseAndOnAllThatDoNot_slow) {
   for (test::WovenCase& one : held_cases(ContactFeatures::particles)) {
     SCOPED_TRACE(one.name);
     one.garment.fabric.air = Air{};
