@@ -119,8 +119,7 @@ TEST(SceneFile, AWindBlowsOnWhatHasAir) {
   EXPECT_EQ(read(R"({"velocity": [3, 0, 1], "gusts": {"speed": 2, "period": 0.5, "seed": 9}})").wind.gusts->seed, 9u);
   EXPECT_THAT(refused("{}"), HasSubstr("velocity"));
   EXPECT_THAT(refused("3"), HasSubstr("/wind"));
-  EXPECT_THAT(refused(R"({"velocity": [40, 40, 0]})"),
-              HasSubstr("/wind/velocity: found 56.5685 m/s, expected a wind"));
+  EXPECT_THAT(refused(R"({"velocity": [40, 40, 0]})"), HasSubstr("/wind/velocity: found 56.5685 m/s, expected a wind"));
   EXPECT_THAT(refused(R"({"velocity": [1, 0, 0], "turbulence": 1})"), HasSubstr("unknown key \"turbulence\""));
   EXPECT_THAT(refused(R"({"velocity": [1, 0, 0], "gusts": {"speed": 1}})"), HasSubstr("period"));
   EXPECT_THAT(refused(R"({"velocity": [1, 0, 0], "gusts": {"speed": 1, "period": 0}})"),
