@@ -2,7 +2,7 @@
 //
 //   JSON --read_garment--> GarmentDescription --build_garment--> Garment (rest shape, immutable)
 //   a frame: Solver::step(FrameInput) = broad phase once, then substeps of
-//            integrate -> pins -> constraints or forces -> self-collision where asked for -> contacts
+//            air -> integrate -> pins -> constraints or forces -> self-collision where asked for -> contacts
 //            -> the divergence check
 //
 // Garments are authored in the character's model space at rest; particles move in world space. m, s, kg, N.
@@ -10,8 +10,8 @@
 // CollisionQuery.
 //
 // Folders, each above the ones before it: state (particles, a frame's input, options, tolerances), garment (rest shapes
-// and their files), contact (who meets whom), woven (the vector kernels of grids and tubes), cloth itself (the solvers,
-// recovery, adaptive substeps, metrics).
+// and their files), air (its force, wind), contact (who meets whom), woven (the vector kernels of grids and tubes),
+// cloth itself (the solvers, recovery, adaptive substeps, metrics).
 #pragma once
 
 // What a caller needs first.
@@ -22,6 +22,8 @@
 
 // The rest.
 #include "cloth/adaptive_substeps.h"      // IWYU pragma: export
+#include "cloth/air/air.h"                // IWYU pragma: export
+#include "cloth/air/wind.h"               // IWYU pragma: export
 #include "cloth/contact/contact_search.h" // IWYU pragma: export
 #include "cloth/contact/self_collision.h" // IWYU pragma: export
 #include "cloth/contact/spatial_hash.h"   // IWYU pragma: export

@@ -54,6 +54,7 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};
     const double s = static_cast<double>(substep + 1) / input.substeps;
+    meet_air(*garment_, pinned_, input, s, h, particles_);
     integrate(input, h);
     follow_pins(*garment_, input, s, h, particles_);
     time = lap(time, times_.cloth);

@@ -12,6 +12,7 @@
 namespace tutu::cloth {
 
 /// A substep h, with forces at the positions it starts from:
+///   v less what the air takes (cloth/air/air.h, where the fabric has it),
 ///   v += h (F/m + g - drag v),  x += h v,  pins to their targets, collisions, seams, then forces and the check.
 /// A collision puts the particle on the surface and cancels its normal velocity, v -= (v . n) n, without friction
 /// [INF585 report 2021, collisions].

@@ -62,6 +62,7 @@ template <class Scalar> void MeshXpbd<Scalar>::restore(const Particles& state) {
 template <class Scalar> void MeshXpbd<Scalar>::predict(const FrameInput& input, double s, double h) {
   const double kept = 1.0 / (1.0 + h * (garment_->fabric.drag + input.extra_drag));
   before_ = particles_.positions;
+  meet_air(*garment_, pinned_, input, s, h, particles_);
   for (int i = 0; i < particles_.count(); ++i) {
     if (pinned_[i]) continue;
     particles_.velocities[i] = kept * (particles_.velocities[i] + h * input.gravity);

@@ -14,6 +14,7 @@ namespace tutu::cloth {
 /// which constraints are solved; what moves is kept in double, so that cloth on which nothing pulls falls exactly.
 ///
 /// A substep h [Macklin et al. 2019, Small Steps in Physics Simulation, algorithm 1]:
+///   v less what the air takes (cloth/air/air.h, where the fabric has it),
 ///   v += h g, v /= 1 + h drag,  x* = x + h v,  pins to their targets,  constraints,  seams,  contacts last,
 ///   v = (x - x_old) / h.
 /// Constraints, each with dlambda = (-C - a/h^2 lambda) / (sum w |grad C|^2 + a/h^2) [Macklin et al. 2016, XPBD, eq.

@@ -1,5 +1,6 @@
 #include "cloth/xpbd.h"
 
+#include "cloth/air/air.h"
 #include "cloth/contact/contact_search.h"
 #include "cloth/contact/self_collision.h"
 #include "cloth/detail/solver_parts.h"
@@ -64,6 +65,7 @@ public:
 private:
   void follow_pins(const FrameInput& input, double s, double h);
   void close_seams();
+  void slow_down(const FrameInput& input, double s, double h);
   bool part_layers(double h);
   void ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s);
   /// A substep: its number, its end in (0, 1] of the frame, and what the kernel is told of it.
@@ -103,6 +105,14 @@ template <class T> void Xpbd<T>::follow_pins(const FrameInput& input, double s, 
 template <class T> void Xpbd<T>::close_seams() {
   for (std::size_t k = 0; k < garment_->seams.size(); ++k)
     sheet_.join(garment_->seams[k].i, garment_->seams[k].j, seam_shares_[k]);
+}
+
+/// The air, in the substep that begins at `s` of the frame.
+template <class T> void Xpbd<T>::slow_down(const FrameInput& input, double s, double h) {
+  const AirInStep<proxies::PlainArithmetic> plain = air_in_step(*garment_->fabric.air, input.wind_at(s), h);
+  WovenAir<T> air{static_cast<T>(plain.pressure), static_cast<T>(plain.lift), static_cast<T>(plain.friction)};
+  for (int axis = 0; axis < 3; ++axis) air.wind[axis] = static_cast<T>(plain.wind[axis]);
+  kernel_.air(sheet_.view(), air);
 }
 
 /// Self-collision. Returns false when a particle's place is no number.
@@ -185,12 +195,14 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
 
   const WovenSheetView<T>& view = sheet_.view();
   const double h = input.seconds / input.substeps;
+  const bool has_air = garment_->fabric.air.has_value();
   WovenStep<T> step;
   step.h = static_cast<T>(h);
   for (int axis = 0; axis < 3; ++axis) step.gravity[axis] = static_cast<T>(input.gravity[axis]);
   step.kept = static_cast<T>(1.0 / (1.0 + h * (garment_->fabric.drag + input.extra_drag)));
   step.fastest = static_cast<T>(k_fastest_particle);
   step.passes = passes_;
+  if (has_air) slow_down(input, 0.0, h);
   kernel_.predict(view, step);
   for (int substep = 0; substep < input.substeps; ++substep) {
     const double s = static_cast<double>(substep + 1) / input.substeps;
@@ -212,8 +224,13 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
     time = lap(time, times_.contact);
     // The last substep's velocities are the frame's; those before are used up by the next prediction at once.
     const bool is_end = substep + 1 == input.substeps, is_last = is_end || input.is_stopped();
-    if (!contacts_.finish(is_last ? kernel_.finish : kernel_.finish_and_predict, view, step))
-      return diverged_at_end(input, at, !is_last);
+    const bool predicts = !is_last && !has_air; // the air needs them all
+    if (!contacts_.finish(predicts ? kernel_.finish_and_predict : kernel_.finish, view, step))
+      return diverged_at_end(input, at, predicts);
+    if (!is_last && has_air) {
+      slow_down(input, s, h);
+      kernel_.predict(view, step);
+    }
     time = lap(time, times_.cloth);
     if (!is_last) continue;
     end_at(input, s);

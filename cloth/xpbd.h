@@ -11,6 +11,7 @@ namespace tutu::cloth {
 /// as wide as the processor's vectors.
 ///
 /// A substep h [Macklin et al. 2019, Small Steps in Physics Simulation, algorithm 1]:
+///   v less what the air takes (cloth/air/air.h, where the fabric has it),
 ///   v = (v + h g) / (1 + h drag),  x* = x + h v,  pins to their targets,  the constraints,  seams,  self-collision
 ///   where asked for,  contacts last,  v += (x - x*) / h.
 /// The last line is v = (x - x_old) / h without its rounding: where nothing holds a particle, it falls as if alone.

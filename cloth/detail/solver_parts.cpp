@@ -1,5 +1,6 @@
 #include "cloth/detail/solver_parts.h"
 
+#include "cloth/air/air.h"
 #include "cloth/garment/springs.h"
 #include "cloth/state/tolerances.h"
 
@@ -21,6 +22,12 @@ void follow_pins(const Garment& garment, const FrameInput& input, double s, doub
     particles.velocities[i] = (target - particles.positions[i]) / h;
     particles.positions[i] = target;
   }
+}
+
+void meet_air(const Garment& garment, std::span<const std::uint8_t> pinned, const FrameInput& input, double s, double h,
+              Particles& particles) {
+  if (garment.fabric.air)
+    apply_air(garment, pinned, input.wind_at(s - h / input.seconds), h, particles.positions, particles.velocities);
 }
 
 double share_of_second(const Garment& garment, std::span<const std::uint8_t> pinned, const Seam& seam) {

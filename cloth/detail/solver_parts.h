@@ -17,6 +17,10 @@ Clock::time_point lap(Clock::time_point from, double& sum);
 /// Pinned particles at their targets at `s` of the frame, with the velocity that took them there within `h` seconds.
 void follow_pins(const Garment& garment, const FrameInput& input, double s, double h, Particles& particles);
 
+/// Velocities after the air of the substep that ends at `s`; none where the fabric has no air.
+void meet_air(const Garment& garment, std::span<const std::uint8_t> pinned, const FrameInput& input, double s, double h,
+              Particles& particles);
+
 /// Where the sides of a seam meet, from the first (0) to the second (1): their centre of mass; a pinned side leads.
 double share_of_second(const Garment& garment, std::span<const std::uint8_t> pinned, const Seam& seam);
 

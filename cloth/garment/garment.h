@@ -55,6 +55,15 @@ struct MeshShape {
   bool pressed = false; ///< it keeps the angles of its rest shape; else it is sewn from flat cloth
 };
 
+/// What the air does to the sheet (cloth/air/air.h), as coefficients of the dynamic pressure on its area. The defaults
+/// are those of a square plate.
+struct Air {
+  double pressure = 1.17; ///< face-on [Hoerner 1965, Fluid-Dynamic Drag, 3-16]
+  double lift = 1.48;     ///< slope of the normal force near edge-on, 1/rad: 2 pi / (2 + sqrt(5)) [Helmbold 1942]
+  /// Edge-on, of both faces: 2 * 1.328 / sqrt(Re) [Blasius 1908] at 2 m/s over 0.5 m, Re = 7e4.
+  double friction = 0.01;
+};
+
 /// How the cloth answers to being pulled and bent. Stiffnesses are those of the sheet (force per metre of width and
 /// unit strain; energy B kappa^2 / 2 per area and curvature kappa), so that a finer grid is the same cloth.
 struct Fabric {
@@ -63,8 +72,9 @@ struct Fabric {
   double shear = 10.0;       ///< N/m
   double bend = 1e-5;        ///< N m, the bending rigidity B (moment per metre of width and unit curvature)
   double bend_springs = 2.0; ///< N/m, of the springs between particles two apart: the report's stand-in for bend
-  double drag = 0.5;         ///< 1/s: the air takes drag * m * v
-  double thickness = 0.004;  ///< full gap of the sheet, m: particles keep half of it from colliders,
+  double drag = 0.5;         ///< 1/s: takes drag * m * v, a stand-in for the air; 0 beside it
+  std::optional<Air> air = {};
+  double thickness = 0.004; ///< full gap of the sheet, m: particles keep half of it from colliders,
   double clearance = 0.0; ///< and this much more, m: for skin that proxies leave bare, and for chords between particles
 
   double contact_offset() const { return 0.5 * thickness + clearance; } ///< what particles keep from colliders, m

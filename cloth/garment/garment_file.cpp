@@ -136,25 +136,64 @@ fs::path fabric_file(const JsonValue& json) {
   throw json.error('"' + name + '"', fmt::format("one of: {}", fmt::join(known, ", ")));
 }
 
-/// `fabric` with what `json` says otherwise.
-Fabric with_keys_of(const JsonValue& json, Fabric fabric) {
+/// true: the defaults; false: none.
+std::optional<Air> read_air(const JsonValue& json) {
+  if (json.is_boolean()) return json.boolean() ? std::optional(Air{}) : std::nullopt;
+  if (!json.is_object()) throw json.error("true, false, or an object with pressure, lift and friction");
+  json.only_keys({"pressure", "lift", "friction"});
+  constexpr double k_most = 100.0; // fifty times any plate's
+  Air air;
+  if (const auto v = json.find("pressure")) air.pressure = v->number_in(0.0, k_most);
+  if (const auto v = json.find("lift")) air.lift = v->number_in(0.0, k_most);
+  if (const auto v = json.find("friction")) air.friction = v->number_in(0.0, k_most);
+  return air;
+}
+
+/// A fabric as files make it up, one over the other.
+struct ReadFabric {
+  Fabric fabric;
+  bool states_drag = false;
+
+  /// Where there is air, drag is only what a file says.
+  Fabric whole() const {
+    Fabric result = fabric;
+    if (fabric.air && !states_drag) result.drag = 0.0;
+    return result;
+  }
+};
+
+/// `read` with what `json` says otherwise.
+ReadFabric with_keys_of(const JsonValue& json, ReadFabric read) {
+  Fabric& fabric = read.fabric;
   if (const auto v = json.find("density")) fabric.density = v->positive();
   if (const auto v = json.find("stretch")) fabric.stretch = v->positive();
   if (const auto v = json.find("shear")) fabric.shear = v->non_negative();
   if (const auto v = json.find("bend")) fabric.bend = v->non_negative();
   if (const auto v = json.find("bend_springs")) fabric.bend_springs = v->non_negative();
-  if (const auto v = json.find("drag")) fabric.drag = v->non_negative();
+  if (const auto v = json.find("drag")) {
+    fabric.drag = v->non_negative();
+    read.states_drag = true;
+  }
+  if (const auto v = json.find("air")) fabric.air = read_air(*v);
   if (const auto v = json.find("thickness")) fabric.thickness = v->non_negative();
   if (const auto v = json.find("clearance")) fabric.clearance = v->non_negative();
-  return fabric;
+  return read;
+}
+
+ReadFabric read_fabric_file(const fs::path& file) {
+  const JsonValue json = JsonValue::read(file);
+  json.only_keys(
+      {"source", "density", "stretch", "shear", "bend", "bend_springs", "drag", "air", "thickness", "clearance"});
+  return with_keys_of(json, {});
 }
 
 Fabric fabric_of(const JsonValue& json) {
   if (json.is_string()) return read_fabric(fabric_file(json));
   if (!json.is_object()) throw json.error("the name of a fabric, a path that ends in .json, or an object");
-  json.only_keys({"base", "density", "stretch", "shear", "bend", "bend_springs", "drag", "thickness", "clearance"});
+  json.only_keys(
+      {"base", "density", "stretch", "shear", "bend", "bend_springs", "drag", "air", "thickness", "clearance"});
   const auto base = json.find("base");
-  return with_keys_of(json, base ? read_fabric(fabric_file(*base)) : Fabric{});
+  return with_keys_of(json, base ? read_fabric_file(fabric_file(*base)) : ReadFabric{}).whole();
 }
 
 /// "rows": 0 or [0, 2]; negative numbers count from the end.
@@ -197,11 +236,7 @@ Attachment read_attachment(const JsonValue& json) {
 
 } // namespace
 
-Fabric read_fabric(const fs::path& file) {
-  const JsonValue json = JsonValue::read(file);
-  json.only_keys({"source", "density", "stretch", "shear", "bend", "bend_springs", "drag", "thickness", "clearance"});
-  return with_keys_of(json, {});
-}
+Fabric read_fabric(const fs::path& file) { return read_fabric_file(file).whole(); }
 
 GarmentDescription read_garment(const std::filesystem::path& file) {
   const JsonValue json = JsonValue::read(file);

@@ -17,13 +17,15 @@ struct FrameInput {
   std::span<const double> friction;
   std::span<const Vec3> pins_start, pins_end; ///< targets in the order of Garment::pins, world, m
   double seconds = 1.0 / 60.0;
-  int substeps = 5;                 ///< >= 1
-  Vec3 gravity = {0.0, -9.81, 0.0}; ///< m/s2
-  double extra_drag = 0.0;          ///< 1/s on top of the fabric's: settles a drape
+  int substeps = 5;                                        ///< >= 1
+  Vec3 gravity = {0.0, -9.81, 0.0};                        ///< m/s2
+  Vec3 wind_start = Vec3::Zero(), wind_end = Vec3::Zero(); ///< world, m/s: for garments with Fabric::air
+  double extra_drag = 0.0;                                 ///< 1/s on top of the fabric's: settles a drape
   /// Where there is one, solvers look at it between substeps, and once it is true end the frame there (Stopped). Not
   /// owned; any thread may set it.
   const std::atomic<bool>* stop = nullptr;
 
+  Vec3 wind_at(double s) const { return (1.0 - s) * wind_start + s * wind_end; } ///< at `s` in [0, 1] of the frame
   bool is_stopped() const { return stop && stop->load(std::memory_order_relaxed); }
 };
 

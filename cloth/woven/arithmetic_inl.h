@@ -1,4 +1,4 @@
-// The closed forms and Coulomb's law on vectors of the target. For kernel.cpp alone.
+// The closed forms, Coulomb's law and the air on vectors of the target. For kernel.cpp alone.
 #if defined(TUTU_CLOTH_WOVEN_ARITHMETIC_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef TUTU_CLOTH_WOVEN_ARITHMETIC_INL_H
 #undef TUTU_CLOTH_WOVEN_ARITHMETIC_INL_H
@@ -38,6 +38,7 @@ template <class T> struct WideArithmetic {
   }
 };
 
+#include "cloth/air/air_inl.h"
 #include "cloth/contact/coulomb_inl.h"
 #include "proxies/distance/closed_forms_inl.h"
 

@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "cloth/woven/kernel.cpp"
 #include <hwy/foreach_target.h>
 
+#include "cloth/woven/air_inl.h"
 #include "cloth/woven/constraints_inl.h"
 #include "cloth/woven/contact_inl.h"
 #include "cloth/woven/motion_inl.h"
@@ -26,11 +27,10 @@ template <class T> void give_back(const WovenSheetView<T>& sheet) {
 }
 
 template <class T> WovenKernel<T> kernel() {
-  return {hwy::TargetName(HWY_TARGET), &predict<T>,       &constraints<T>,
-          &constraints_to_break<T>,    &predict_again<T>, &farthest<T>,
-          &finish<false, T>,           &finish<true, T>,  &bounds<T>,
-          &contact_capsule<T>,         &contact_plane<T>, &fetch<T>,
-          &contact_cells<T>,           &give_back<T>};
+  return {
+      hwy::TargetName(HWY_TARGET), &air<T>,           &predict<T>,       &constraints<T>,   &constraints_to_break<T>,
+      &predict_again<T>,           &farthest<T>,      &finish<false, T>, &finish<true, T>,  &bounds<T>,
+      &contact_capsule<T>,         &contact_plane<T>, &fetch<T>,         &contact_cells<T>, &give_back<T>};
 }
 
 WovenKernel<float> single_kernel() { return kernel<float>(); }

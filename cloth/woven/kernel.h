@@ -98,6 +98,12 @@ template <class T> struct WovenStep {
   int closing_sweeps = 1; ///< Gauss-Seidel over the warp edges after it
 };
 
+/// The air of a substep: AirInStep of cloth/air/air_inl.h in plain numbers.
+template <class T> struct WovenAir {
+  T pressure = 0, lift = 0, friction = 0; ///< kg s/m3
+  T wind[3] = {};                         ///< m/s
+};
+
 /// Rows first..last-1 of one block.
 struct WovenRows {
   int block = 0, first = 0, last = 0;
@@ -146,6 +152,8 @@ template <class T> struct WovenKernel {
 
   const char* target; ///< as Highway calls it
 
+  /// v of free particles takes what the air takes from the triangles of each cell, block by block.
+  void (*air)(Sheet, const WovenAir<T>&);
   /// x goes to was and moves on by h v, v having taken gravity and drag. Pinned particles stay.
   void (*predict)(Sheet, Step);
   /// Bending, tethers, then all passes over the springs. False when an edge or a taut tether was longer than (1 +

@@ -25,6 +25,7 @@ double fastest_of(const Runtime& runtime, std::size_t garments) {
 DrapeResult drape(const Wearer& wearer, std::span<const Transform> first, double longest,
                   const std::function<bool(int, int)>& progress, const std::atomic<bool>* stop) {
   Runtime runtime(wearer);
+  runtime.set_wind({wearer.wind.velocity});
   runtime.stop_when(stop);
   const rig::Skeleton& skeleton = wearer.character.skeleton;
   const std::vector<Transform>& rest = skeleton.rest_local;
@@ -74,6 +75,10 @@ std::uint64_t drape_fingerprint(const Scene& scene) {
     const cloth::Fabric& f = garment.fabric;
     add(f.density, f.drag, f.contact_offset());
     add(1e3 * f.bend, garment.pressed); // in mN m, above the rounding
+    if (f.air) {
+      add(f.air->pressure, f.air->lift, f.air->friction);
+      add_point(scene.wind.velocity);
+    }
   }
   for (const std::vector<int>& joints : scene.attachment_joints)
     for (const int joint : joints) add(joint);

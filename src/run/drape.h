@@ -11,7 +11,7 @@ namespace tutu::app {
 
 /// Garments settled on the still body, in two phases: the body goes from its rest pose to a first pose (the garments
 /// are built around the rest pose), then stands until no particle is faster than k_settled_speed or `longest` has
-/// passed.
+/// passed. Of the wind the steady part alone blows: in gusts nothing settles.
 struct DrapeResult {
   GarmentPositions positions; ///< world, m, one vector a garment
   double seconds = 0.0;       ///< simulated
@@ -26,7 +26,7 @@ DrapeResult drape(const Wearer& wearer, std::span<const Transform> first, double
 DrapeResult drape(const Scene& scene, double longest, const std::function<bool(int, int)>& progress,
                   const std::atomic<bool>* stop = nullptr);
 
-/// Of everything a drape depends on: garments, first pose, proxies, ground, solver settings.
+/// Of everything a drape depends on: garments, steady wind, first pose, proxies, ground, solver settings.
 std::uint64_t drape_fingerprint(const Scene& scene);
 
 } // namespace tutu::app

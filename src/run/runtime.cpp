@@ -72,8 +72,18 @@ Runtime::Runtime(const Wearer& wearer)
   friction_.push_back(k_ground_friction);
   friction_.push_back(k_skin_friction);
   troubles_.first_recoveries.reserve(RunTroubles::k_kept);
+  set_wind(wearer.wind);
   count_from(0.0, wearer.settings.frame_seconds());
   stand_still();
+}
+
+void Runtime::set_wind(const cloth::Wind& wind) {
+  const bool gusts = !wind.gusts || (wind.gusts->speed >= 0.0 && wind.gusts->speed <= cloth::k_fastest_wind &&
+                                     wind.gusts->period >= cloth::k_shortest_gust);
+  if (!gusts || !(wind.velocity.norm() <= cloth::k_fastest_wind))
+    throw std::invalid_argument(fmt::format("a wind that is none; expected at most {} m/s, and gusts of at least {} s",
+                                            cloth::k_fastest_wind, cloth::k_shortest_gust));
+  wind_ = wind;
 }
 
 void Runtime::set_pose(std::span<const Transform> world) {
@@ -171,6 +181,8 @@ void Runtime::step(std::span<const Transform> world, double seconds, double extr
     for (std::size_t g = 0; g < garments_.size(); ++g) pins_start_[g] = pins_end_[g];
     carry_along(world_before_);
   }
+  wind_start_ = cloth::wind_at(wind_, time());
+  wind_end_ = cloth::wind_at(wind_, time() + seconds_);
   times_.proxies = watch.lap();
 
   frame_is_split_ = false;
@@ -202,6 +214,8 @@ void Runtime::advance_garment(std::size_t g, double extra_drag) {
   input.pins_end = pins_end_[g];
   input.seconds = seconds_;
   input.substeps = substeps_;
+  input.wind_start = wind_start_;
+  input.wind_end = wind_end_;
   input.extra_drag = extra_drag;
   input.stop = stop_;
   frame.planning = 0.0;

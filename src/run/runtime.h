@@ -96,6 +96,10 @@ public:
   /// std::invalid_argument for another number of joints, and for seconds not above 0 or above k_longest_frame.
   void step(std::span<const Transform> world_from_joint, double seconds, double extra_drag = 0.0);
 
+  /// From now on, in place of the wearer's. Throws std::invalid_argument for a wind, or gusts, beyond
+  /// cloth::k_fastest_wind, and for gusts shorter than cloth::k_shortest_gust.
+  void set_wind(const cloth::Wind& wind);
+
   /// From now on a frame ends early once `*stop` is true, between two substeps: stopped(). Not owned; null: never.
   void stop_when(const std::atomic<bool>* stop) { stop_ = stop; }
 
@@ -168,6 +172,8 @@ private:
   std::vector<std::unique_ptr<proxies::CollisionQuery>> queries_; ///< [garment]: one serves one thread
   std::vector<cloth::GuardedSolver> garments_;
   std::vector<GarmentFrame> garment_frames_; ///< [garment], the last
+  cloth::Wind wind_;
+  Vec3 wind_start_ = Vec3::Zero(), wind_end_ = Vec3::Zero(); ///< of the frame, m/s
   Workers workers_;
   std::vector<double> friction_;     ///< of each collider, then the ground, then the true body
   GarmentPositions start_positions_; ///< of start(), and the joints then

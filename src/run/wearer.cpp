@@ -3,6 +3,7 @@
 #include "rig/error.h"
 #include "src/run/worn_garment.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace tutu::app {
@@ -12,6 +13,11 @@ void Wearer::put_on(const cloth::GarmentDescription& garment) {
   garments.push_back(std::move(worn.garment));
   attachment_joints.push_back(std::move(worn.joints));
   skin_pins.push_back(std::move(worn.skin_pins));
+}
+
+bool Wearer::has_air() const {
+  return std::any_of(garments.begin(), garments.end(),
+                     [](const cloth::Garment& garment) { return garment.fabric.air.has_value(); });
 }
 
 proxies::BodyMesh body_of(const rig::Character& character) {

@@ -1,6 +1,7 @@
 // A character and what it wears: everything of a scene but its motion, in memory.
 #pragma once
 
+#include "cloth/air/wind.h"
 #include "cloth/garment/garment.h"
 #include "proxies/body/body_mesh.h"
 #include "proxies/collider.h"
@@ -19,6 +20,7 @@ using GarmentPositions = std::vector<std::vector<Vec3>>;
 struct Wearer {
   RunSettings settings;
   std::optional<double> ground_height = 0.0; ///< m; none = no ground
+  cloth::Wind wind; ///< what blows on garments with Fabric::air, unless Runtime::set_wind() says otherwise
   rig::Character character;
   std::vector<proxies::Proxy> proxies;
   std::vector<cloth::Garment> garments;
@@ -29,6 +31,7 @@ struct Wearer {
   /// character has not.
   void put_on(const cloth::GarmentDescription& garment);
 
+  bool has_air() const; ///< any garment
   bool collides_with_body() const { return settings.backend == proxies::Backend::mesh; }
 };
 

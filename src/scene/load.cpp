@@ -174,6 +174,10 @@ LoadedScene load_scene(const SceneDescription& description) {
     const GarmentEntry& entry = description.garments[g];
     within_memory(entry.file.string(), [&] { scene.put_on(as_entered(entry, std::move(garments[g]))); });
   }
+  if (!description.wind.is_still() && !scene.has_air())
+    throw InputError(scene.file, "/wind", "wind, and no garment whose fabric has air",
+                     "\"air\" in the fabric of one, or no wind");
+  scene.wind = description.wind;
   apply_settings(description, scene);
   return scene;
 }

@@ -15,7 +15,7 @@ struct LoadedScene : Scene {
   SceneFiles files;
   std::vector<std::string> notes; ///< what the user should know: from the importer, the retargeting, units
 
-  SceneDescription description() const { return {files, ground_height, settings, {}, {}}; }
+  SceneDescription description() const { return {files, ground_height, wind, settings, {}, {}}; }
 };
 
 /// Reads everything a description names. Throws InputError; also for a setting that the file states, or that is

@@ -3,6 +3,9 @@
 #include "cloth/garment/garment_file.h"
 #include "rig/io/json_file.h"
 
+#include <fmt/format.h>
+#include <limits>
+
 namespace tutu::app {
 namespace {
 
@@ -110,6 +113,24 @@ void read_character(const JsonValue& value, SceneFiles& scene) {
     import.rest = rig::rest_pose_named(rest->string_among(rig::k_rest_pose_names));
 }
 
+cloth::Wind read_wind(const JsonValue& json) {
+  json.only_keys({"velocity", "gusts"});
+  cloth::Wind wind;
+  const JsonValue velocity = json.at("velocity");
+  wind.velocity = velocity.vec3();
+  if (!(wind.velocity.norm() <= cloth::k_fastest_wind))
+    throw velocity.error(fmt::format("{:g} m/s", wind.velocity.norm()),
+                         fmt::format("a wind of at most {:g} m/s", cloth::k_fastest_wind));
+  if (const auto gusts = json.find("gusts")) {
+    gusts->only_keys({"speed", "period", "seed"});
+    wind.gusts = cloth::Gusts{gusts->at("speed").number_in(0.0, cloth::k_fastest_wind),
+                              gusts->at("period").number_in(cloth::k_shortest_gust, 1e6)};
+    if (const auto seed = gusts->find("seed"))
+      wind.gusts->seed = static_cast<std::uint64_t>(seed->integer_in(0, std::numeric_limits<int>::max()));
+  }
+  return wind;
+}
+
 } // namespace
 
 std::vector<fs::path> inputs_of(const SceneFiles& files) {
@@ -142,7 +163,7 @@ RunSettings SceneDescription::changed_settings() const {
 
 SceneDescription read_scene(const fs::path& file) {
   const JsonValue json = JsonValue::read(file);
-  json.only_keys({"character", "motion", "interpolation", "skinning", "proxies", "garments", "ground", "solver",
+  json.only_keys({"character", "motion", "interpolation", "skinning", "proxies", "garments", "ground", "wind", "solver",
                   "collision", "drape"});
   SceneDescription scene;
   scene.file = file;
@@ -165,6 +186,7 @@ SceneDescription read_scene(const fs::path& file) {
       scene.ground_height = ground->at("height").number();
     }
   }
+  if (const auto wind = json.find("wind")) scene.wind = read_wind(*wind);
   for (const char* section : {"solver", "collision"})
     if (const auto settings = json.find(section)) read_section(*settings, section, scene.settings, scene.stated);
   if (const auto drape = json.find("drape")) scene.drape = path_in(*drape);

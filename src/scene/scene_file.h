@@ -1,6 +1,7 @@
 // Scenes on disk: JSON, schema in assets/schema/scene.schema.json. Paths in a scene are relative to the scene's folder.
 #pragma once
 
+#include "cloth/air/wind.h"
 #include "rig/import/import.h"
 #include "rig/io/bvh.h"
 #include "rig/io/clip_file.h"
@@ -56,6 +57,7 @@ struct SceneFiles {
 /// A scene as authored.
 struct SceneDescription : SceneFiles {
   std::optional<double> ground_height = 0.0; ///< m; none = no ground
+  cloth::Wind wind;
   RunSettings settings;
   std::vector<const SettingRow*> stated; ///< what the file says of them
   std::vector<SettingChange> changes;    ///< in place of that

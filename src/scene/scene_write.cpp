@@ -63,13 +63,21 @@ ordered_json motion_json(const MotionSource& motion, const Paths& paths) {
   return {{"clip", paths(clip.clip)}, {"retarget_from", paths(*clip.retarget_from)}};
 }
 
+ordered_json numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
 ordered_json garment_json(const GarmentEntry& entry, const Paths& paths) {
   ordered_json json = {{"file", paths(entry.file)}};
-  const auto numbers = [](const Vec3& v) { return ordered_json{v.x(), v.y(), v.z()}; };
   if (entry.scale != Vec3::Ones()) json["scale"] = numbers(entry.scale);
   if (entry.offset != Vec3::Zero()) json["offset"] = numbers(entry.offset);
   if (entry.resolution != 1.0) json["resolution"] = entry.resolution;
   return json.size() == 1 ? json["file"] : json;
+}
+
+ordered_json wind_json(const cloth::Wind& wind) {
+  ordered_json json = {{"velocity", numbers(wind.velocity)}};
+  if (wind.gusts)
+    json["gusts"] = {{"speed", wind.gusts->speed}, {"period", wind.gusts->period}, {"seed", wind.gusts->seed}};
+  return json;
 }
 
 } // namespace
@@ -87,6 +95,7 @@ void write_scene(const SceneDescription& d, const fs::path& file, const std::str
   for (const GarmentEntry& entry : d.garments) json["garments"].push_back(garment_json(entry, paths));
   if (!d.ground_height) json["ground"] = false;
   else json["ground"] = {{"height", *d.ground_height}};
+  if (!d.wind.is_still()) json["wind"] = wind_json(d.wind);
   // What is left out is the standard; what the file would say of no use is refused when it is read.
   for (const SettingRow& row : settings_table()) {
     const double value = row.get(d.settings);

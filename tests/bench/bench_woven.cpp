@@ -1,5 +1,5 @@
-// What a tube of N x N particles costs, a particle and substep, whatever N: hanging, its upper edge swung, and with a
-// capsule that swings in it. All of N = 17 .. 130, in nanoseconds (`ns`):
+// What a tube of N x N particles costs, a particle and substep, whatever N: hanging, its upper edge swung; the same in
+// the air; and with a capsule that swings in it. All of N = 17 .. 130, in nanoseconds (`ns`):
 //   taskset -c 0 bench_woven --benchmark_min_time=0.05 --benchmark_repetitions=5
 //   --benchmark_report_aggregates_only=true
 #include "cloth/solver.h"
@@ -12,10 +12,11 @@ namespace {
 using namespace tutu;
 using namespace tutu::cloth;
 
-void tube(benchmark::State& state, bool is_worn) {
+void tube(benchmark::State& state, bool is_worn, bool has_air) {
   const int n = static_cast<int>(state.range(0));
   Garment garment = test::detail::tube(n, n, {}, 0.8, std::nullopt);
   test::pin_first_row(garment);
+  if (has_air) garment.fabric.air = Air{};
   const auto solver = make_solver(garment, {});
   const auto query = proxies::make_query(proxies::Backend::hybrid);
   std::vector<Vec3> pins_start(garment.pins.size()), pins_end(garment.pins.size());
@@ -50,7 +51,8 @@ void tube(benchmark::State& state, bool is_worn) {
 }
 
 void sizes(benchmark::internal::Benchmark* b) { b->DenseRange(17, 130)->Unit(benchmark::kMicrosecond); }
-BENCHMARK_CAPTURE(tube, hanging, false)->Apply(sizes);
-BENCHMARK_CAPTURE(tube, worn, true)->Apply(sizes);
+BENCHMARK_CAPTURE(tube, hanging, false, false)->Apply(sizes);
+BENCHMARK_CAPTURE(tube, airy, false, true)->Apply(sizes);
+BENCHMARK_CAPTURE(tube, worn, true, false)->Apply(sizes);
 
 } // namespace

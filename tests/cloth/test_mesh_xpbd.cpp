@@ -35,7 +35,8 @@ Garment upright(int cells, const Fabric& fabric, bool held) {
 }
 
 /// Runs frames with the pins where they were at rest.
-void run(Solver& solver, const Garment& garment, FrameInput input, int frames) {
+void run(Solver& solver, const Garment& garment, const FrameInput& frame, int frames) {
+  FrameInput input = frame;
   static const auto query = proxies::make_query(proxies::Backend::brute);
   std::vector<Vec3> pins;
   for (const Pin& pin : garment.pins) pins.push_back(garment.rest_positions[pin.particle]);

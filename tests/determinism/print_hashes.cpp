@@ -1,6 +1,7 @@
 // Prints the hash of every kind of run of the cloth folder on a scene of its own. Built twice, with and without
 // optimisation: both must print the same.
 #include "cloth/adaptive_substeps.h"
+#include "cloth/air/wind.h"
 #include "cloth/metrics.h"
 #include "cloth/recovery.h"
 #include "tests/support/swinging_limbs.h"
@@ -14,6 +15,8 @@ using namespace tutu::cloth;
 
 namespace {
 
+const Wind k_wind = {{2.0, 0.5, -3.0}, Gusts{1.0, 0.1, 7}};
+
 /// 0 when the run could not be carried.
 std::uint64_t hash_of(const Garment& garment, const SolverOptions& options, proxies::Backend backend, int frames) {
   GuardedSolver solver(make_solver(garment, options), garment);
@@ -21,6 +24,8 @@ std::uint64_t hash_of(const Garment& garment, const SolverOptions& options, prox
   test::SwingingLimbs limbs(garment, 40);
   for (int frame = 0; frame < frames; ++frame) {
     FrameInput input = limbs.advance(options.solver == SolverKind::mass_spring ? 30 : 8);
+    input.wind_start = wind_at(k_wind, frame * input.seconds);
+    input.wind_end = wind_at(k_wind, (frame + 1) * input.seconds);
     input.substeps = plan_substeps(input, extent_of(solver.particles()), garment.fabric.contact_offset()).substeps;
     if (solver.step(input, *query)) return 0;
   }
@@ -50,5 +55,9 @@ int main() {
         std::printf("%s, %s, %s: %016" PRIx64 "\n", one.name.c_str(), std::string(name_of(kind)).c_str(),
                     std::string(proxies::k_backend_names[static_cast<std::size_t>(backend)]).c_str(),
                     hash_of(one.garment, {.solver = kind}, backend, 3));
+    one.garment.fabric.air = Air{};
+    for (const SolverKind kind : {SolverKind::mass_spring, SolverKind::xpbd})
+      std::printf("%s, %s, in the air: %016" PRIx64 "\n", one.name.c_str(), std::string(name_of(kind)).c_str(),
+                  hash_of(one.garment, {.solver = kind}, proxies::Backend::hybrid, 3));
   }
 }

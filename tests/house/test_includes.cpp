@@ -43,7 +43,7 @@ const std::vector<std::vector<std::string>> k_rows = {
     {"cloth/state"},
     {"cloth/garment/detail"},
     {"cloth/garment"},
-    {"cloth/contact"},
+    {"cloth/contact", "cloth/air"},
     {"cloth/woven"},
     {"cloth/detail"},
     {"cloth"},

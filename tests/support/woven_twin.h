@@ -2,6 +2,7 @@
 // formulas. Of the kernel's layout it knows the order only: block after block, in each one column of every lane's run.
 #pragma once
 
+#include "cloth/air/air.h"
 #include "cloth/garment/elements.h"
 #include "cloth/garment/garment.h"
 #include "cloth/state/tolerances.h"
@@ -9,6 +10,7 @@
 #include "tests/support/nearest_search.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
@@ -66,6 +68,18 @@ public:
   /// above all where an earlier contact has just put a shared corner on the surface.
   std::int64_t grazing = 0;
   static constexpr double k_grazing = 1e-6; ///< m, the rounding of single precision at these places, some times over
+
+  /// The air for h seconds, triangle by triangle: v = w + (I + h D / m)^-1 (v - w) [cloth/air/air.h].
+  void air(const Vec3& wind, double h) {
+    for (int block = 0; block < blocks_; ++block)
+      for_block(block, 0, rows_ - 1, [&](int a) {
+        const std::optional<int> b = right_of(a);
+        if (!b) return;
+        const int d = a + columns_, e = *b + columns_;
+        air_on({a, d, *b}, wind, h);
+        air_on({e, *b, d}, wind, h);
+      });
+  }
 
   void predict(const cloth::WovenStep<double>& step) {
     const Vec3 gravity(step.gravity[0], step.gravity[1], step.gravity[2]);
@@ -196,6 +210,17 @@ private:
     if (i % columns_ + 1 < columns_) return i + 1;
     if (!garment_->woven_shut) return std::nullopt;
     return i - columns_ + 1;
+  }
+
+  void air_on(const std::array<int, 3>& corners, const Vec3& wind, double h) {
+    const auto& [pressure, lift, friction] = *garment_->fabric.air;
+    const Vec3 doubled = (x[corners[1]] - x[corners[0]]).cross(x[corners[2]] - x[corners[0]]), n = doubled.normalized();
+    const Vec3 u = (v[corners[0]] + v[corners[1]] + v[corners[2]]) / 3.0 - wind;
+    const double across = std::abs(u.dot(n)), along = (u - u.dot(n) * n).norm();
+    const Eigen::Matrix3d normal = n * n.transpose(), identity = Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d drag = 0.5 * cloth::k_air_density * 0.5 * doubled.norm() / 3.0 *
+                                 ((pressure * across + lift * along) * normal + friction * along * (identity - normal));
+    for (const int i : corners) v[i] = wind + (identity + h * inverse_mass_[i] * drag).inverse() * (v[i] - wind);
   }
 
   void note(const cloth::Spring& spring) {

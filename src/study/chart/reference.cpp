@@ -144,6 +144,10 @@ std::string reference_fingerprint(const LoadedScene& scene, const ReferencePlan&
   for (const cloth::Garment& garment : scene.garments)
     for (const auto& t : garment.triangles)
       for (const std::uint32_t corner : t) hash.add(std::uint64_t{corner});
+  if (const auto& gusts = scene.wind.gusts) { // of the wind the drape knows the rest
+    for (const double number : {gusts->speed, gusts->period}) hash.add(number);
+    hash.add(gusts->seed);
+  }
   const Protocol& p = plan.protocol;
   for (const int frames : {p.frames, p.settle, p.held, p.every}) hash.add(static_cast<std::uint64_t>(frames));
   for (const int substeps : plan.substeps) hash.add(static_cast<std::uint64_t>(substeps));

@@ -190,6 +190,49 @@ TEST_F(GarmentFile, AFabricIsNamedOrWrittenOutOrBoth) {
   EXPECT_THAT(refused("3"), HasSubstr("/fabric: found 3"));
 }
 
+TEST_F(GarmentFile, AirStandsInForDrag) {
+  std::filesystem::create_directories(folder_ / "fabrics");
+  std::filesystem::create_directories(folder_ / "garments");
+  write_file(folder_ / "fabrics/felt.json", R"({"source": "made up", "density": 0.5})");
+  write_file(folder_ / "fabrics/airy.json", R"({"source": "made up", "air": {"friction": 0.02}})");
+  write_file(folder_ / "fabrics/both.json", R"({"source": "made up", "drag": 0.7})");
+  const auto fabric_of = [&](const std::string& fabric) {
+    write_file(folder_ / "garments/g.json",
+               R"({"shape": {"grid": {"rows": 3, "columns": 3, "corner": [0,0,0], "across": [1,0,0], "down": [0,-1,0]}},
+                  "fabric": )" +
+                   fabric + "}");
+    return read_garment(folder_ / "garments/g.json").fabric;
+  };
+  EXPECT_FALSE(fabric_of("\"felt\"").air);
+  EXPECT_EQ(fabric_of("\"felt\"").drag, Fabric{}.drag);
+  const Fabric plain = fabric_of(R"({"base": "felt", "air": true})");
+  ASSERT_TRUE(plain.air);
+  EXPECT_EQ(plain.air->pressure, Air{}.pressure);
+  EXPECT_EQ(plain.drag, 0.0);
+  const Fabric airy = fabric_of("\"airy\"");
+  EXPECT_EQ(airy.air->friction, 0.02);
+  EXPECT_EQ(airy.air->lift, Air{}.lift);
+  EXPECT_EQ(airy.drag, 0.0);
+  EXPECT_EQ(read_fabric(folder_ / "fabrics/airy.json").drag, 0.0);
+  EXPECT_EQ(fabric_of(R"({"base": "both", "air": true})").drag, 0.7) << "said, though by its base";
+  EXPECT_EQ(fabric_of(R"({"air": {}, "drag": 0.3})").drag, 0.3);
+  const Fabric still = fabric_of(R"({"base": "airy", "air": false})");
+  EXPECT_FALSE(still.air);
+  EXPECT_EQ(still.drag, Fabric{}.drag);
+  using ::testing::HasSubstr;
+  const auto refused = [&](const std::string& air) -> std::string {
+    try {
+      fabric_of("{\"air\": " + air + "}");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(refused("1.2"), HasSubstr("/fabric/air: found 1.2, expected true, false, or an object"));
+  EXPECT_THAT(refused(R"({"pressure": -1})"), HasSubstr("/fabric/air/pressure: found -1"));
+  EXPECT_THAT(refused(R"({"density": 1.2})"), HasSubstr("unknown key \"density\""));
+}
+
 TEST_F(GarmentFile, TheShippedFabricsOrderAsTheyShould) {
   const auto shipped = [&](const std::string& name) {
     write_file(folder_ / "g.json", R"({"shape": {"grid": {"rows": 3, "columns": 3, "corner": [0,0,0], "across": [1,0,0],

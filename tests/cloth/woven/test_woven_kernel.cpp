@@ -215,6 +215,32 @@ TYPED_TEST(WovenKernels, PredictAndFinish) {
   });
 }
 
+TYPED_TEST(WovenKernels, TheAir) {
+  using T = TypeParam;
+  Worst worst{"air"};
+  this->everywhere([&](const Garment& bare) {
+    Garment garment = bare;
+    garment.fabric.air = Air{1.25, 1.5, 0.5};
+    Both<T> both(garment, 17);
+    const Vec3 wind(3, -1, 2);
+    constexpr double k_long = 1.0 / 60.0; // s: light cloth is taken along
+    const auto plain = air_in_step(*garment.fabric.air, wind, k_long);
+    const WovenAir<T> air{static_cast<T>(plain.pressure),
+                          static_cast<T>(plain.lift),
+                          static_cast<T>(plain.friction),
+                          {T(wind[0]), T(wind[1]), T(wind[2])}};
+    both.kernel.air(both.view, air);
+    both.twin.air(wind, k_long);
+    worst.add(both.worst_v() * k_h);
+    EXPECT_LT(both.worst_v() * k_h, Bound<T>::finish);
+    both.copy(); // and nothing else has changed
+    both.kernel.predict(both.view, step_of<T>());
+    both.twin.predict(step_of<double>());
+    EXPECT_LT(both.worst_x(), Bound<T>::predict);
+    EXPECT_TRUE(both.kernel.constraints(both.view, step_of<T>()));
+  });
+}
+
 TYPED_TEST(WovenKernels, Bounds) {
   using T = TypeParam;
   this->everywhere([&](const Garment& garment) {

@@ -41,6 +41,7 @@ bool frame_of(test::WovenTwin& twin, const Garment& garment, const FrameInput& i
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
     const double before = static_cast<double>(substep) / input.substeps, s = (substep + 1.0) / input.substeps;
+    if (garment.fabric.air) twin.air(input.wind_at(before), h);
     twin.predict(step);
     for (std::size_t k = 0; k < garment.pins.size(); ++k) {
       const int i = garment.pins[k].particle;
@@ -104,11 +105,12 @@ class WovenRuns : public ::testing::TestWithParam<ContactFeatures> {};
 INSTANTIATE_TEST_SUITE_P(Features, WovenRuns,
                          ::testing::Values(ContactFeatures::particles, ContactFeatures::triangles));
 
-void compare_in_double(ContactFeatures features) {
+void compare_in_double(ContactFeatures features, const std::optional<Air>& air = {}) {
   constexpr int k_frames = 6, k_substeps = 8;
   std::int64_t all_contacts = 0;
-  for (const test::WovenCase& one : held_cases(features)) {
+  for (test::WovenCase& one : held_cases(features)) {
     SCOPED_TRACE(one.name);
+    one.garment.fabric.air = air;
     for (const int passes : {1, 2}) {
       const Garment& garment = one.garment;
       SolverOptions options;
@@ -125,7 +127,9 @@ void compare_in_double(ContactFeatures features) {
       double error = 0.0;
       std::int64_t contacts = 0;
       for (int frame = 0; frame < k_frames; ++frame) {
-        const FrameInput input = limbs.advance(k_substeps);
+        FrameInput input = limbs.advance(k_substeps);
+        input.wind_start = Vec3(1.0 + frame, 0.5, -2.0);
+        input.wind_end = input.wind_start + Vec3::UnitX();
         const auto end = solver->step(input, *query);
         ASSERT_FALSE(end.has_value()) << "frame " << frame << ", substep " << divergence_of(end)->substep << ": "
                                       << what_was_found(*divergence_of(end));
@@ -144,6 +148,7 @@ void compare_in_double(ContactFeatures features) {
 }
 
 TEST(WovenSheets, ParticlesInDoubleMeetWhatTheTwinsMeet_slow) { compare_in_double(ContactFeatures::particles); }
+TEST(WovenSheets, InTheAirInDoubleMeetWhatTheTwinsMeet_slow) { compare_in_double(ContactFeatures::particles, Air{}); }
 TEST(WovenSheets, TrianglesInDoubleMeetWhatTheTwinsMeet_slow) { compare_in_double(ContactFeatures::triangles); }
 
 TEST_P(WovenRuns, InFloatStayNearTheTwinForAFrame_slow) {
@@ -186,7 +191,8 @@ template <bool k_double> std::uint64_t hash_on(std::int64_t target, const Garmen
   const auto query = proxies::make_query(proxies::Backend::hybrid);
   test::SwingingLimbs limbs(garment, k_period);
   for (int frame = 0; frame < 10; ++frame) {
-    const FrameInput input = limbs.advance(6);
+    FrameInput input = limbs.advance(6);
+    input.wind_start = input.wind_end = Vec3(3.0, 0.3, -2.0); // for what has air
     EXPECT_FALSE(solver->step(input, *query).has_value());
   }
   return state_hash(solver->particles());
@@ -197,20 +203,32 @@ bool fuses(std::int64_t target) {
   return (target & (HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)) != 0 || (HWY_ARCH_X86 == 0 && target != HWY_EMU128);
 }
 
+void compare_on_all_targets(const Garment& garment, ContactFeatures features) {
+  std::optional<std::uint64_t> single[2], two[2];
+  for (const std::int64_t target : test::simd_targets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const bool fused = fuses(target);
+    const std::uint64_t s = hash_on<false>(target, garment, features);
+    const std::uint64_t d = hash_on<true>(target, garment, features);
+    EXPECT_EQ(single[fused].value_or(s), s);
+    EXPECT_EQ(two[fused].value_or(d), d);
+    single[fused] = s;
+    two[fused] = d;
+  }
+}
+
 TEST_P(WovenRuns, GiveTheSameBitsOnAllTargetsThatFuseAndOnAllThatDoNot) {
   for (const test::WovenCase& one : held_cases(GetParam())) {
     SCOPED_TRACE(one.name);
-    std::optional<std::uint64_t> single[2], two[2];
-    for (const std::int64_t target : test::simd_targets()) {
-      SCOPED_TRACE(hwy::TargetName(target));
-      const bool fused = fuses(target);
-      const std::uint64_t s = hash_on<false>(target, one.garment, GetParam());
-      const std::uint64_t d = hash_on<true>(target, one.garment, GetParam());
-      EXPECT_EQ(single[fused].value_or(s), s);
-      EXPECT_EQ(two[fused].value_or(d), d);
-      single[fused] = s;
-      two[fused] = d;
-    }
+    compare_on_all_targets(one.garment, GetParam());
+  }
+}
+
+TEST(WovenSheets, GiveTheSameBitsInTheAirOnAllTargetsThatFuseAndOnAllThatDoNot_slow) {
+  for (test::WovenCase& one : held_cases(ContactFeatures::particles)) {
+    SCOPED_TRACE(one.name);
+    one.garment.fabric.air = Air{};
+    compare_on_all_targets(one.garment, ContactFeatures::particles);
   }
 }
 

@@ -190,6 +190,7 @@ TEST(SceneWrite, ReadsBackWhatWasWritten) {
   d.settings.swept = false;
   d.settings.passes = 2;
   d.ground_height.reset();
+  d.wind = {{3, 0, -1.5}, cloth::Gusts{1.5, 0.8, 7}};
   d.garments[0].resolution = 1.5;
   d.garments[0].offset = {0, 0.1, 0};
   fs::create_directories(folder / "elsewhere");
@@ -202,6 +203,7 @@ TEST(SceneWrite, ReadsBackWhatWasWritten) {
   EXPECT_FALSE(back.settings.swept);
   EXPECT_EQ(back.settings.passes, 2);
   EXPECT_FALSE(back.ground_height.has_value());
+  EXPECT_EQ(back.wind, d.wind);
   EXPECT_EQ(back.garments[0].resolution, 1.5);
   EXPECT_EQ(back.garments[0].offset, Vec3(0, 0.1, 0));
   EXPECT_TRUE(fs::equivalent(back.character, d.character));

@@ -128,6 +128,41 @@ TEST_F(RuntimeTest, NormalsAreThoseOfTheTriangles) {
     }
 }
 
+TEST_F(RuntimeTest, AnEngineSetsTheWind) {
+  scene_.garments[0].fabric.air = cloth::Air{};
+  scene_.garments[0].fabric.drag = 0.0;
+  const auto blown = [&](const auto& set) { // how far the sheet's middle went to +X, and the bits
+    Runtime runtime(scene_);
+    runtime.start(joints_at(0.0), at_rest());
+    for (int frame = 1; frame < 40; ++frame) {
+      set(runtime);
+      runtime.step(joints_at(0.0), h_);
+    }
+    return std::pair(runtime.positions(0)[76].x() - scene_.garments[0].rest_positions[76].x(), runtime.state_hash());
+  };
+  const auto still = blown([](Runtime&) {});
+  const auto set = blown([](Runtime& runtime) { runtime.set_wind({{8, 0, 0}}); });
+  EXPECT_GT(set.first, still.first + 0.01);
+  scene_.wind.velocity = {8, 0, 0};
+  EXPECT_EQ(blown([](Runtime&) {}).second, set.second) << "as the wearer has it";
+  scene_.wind.gusts = cloth::Gusts{3.0, 0.2, 1};
+  const auto gusty = blown([](Runtime&) {});
+  EXPECT_NE(gusty.second, set.second);
+  EXPECT_EQ(blown([](Runtime&) {}).second, gusty.second);
+  scene_.settings.threads = 2;
+  EXPECT_EQ(blown([](Runtime&) {}).second, gusty.second);
+  EXPECT_EQ(drape(scene_, 0.2, [](int, int) { return true; }).positions, [&] {
+    LoadedScene steady = scene_;
+    steady.wind.gusts.reset();
+    return drape(steady, 0.2, [](int, int) { return true; }).positions;
+  }()) << "draped without gusts";
+
+  Runtime runtime(scene_);
+  for (const cloth::Wind& none : {cloth::Wind{{60, 0, 0}}, cloth::Wind{{std::nan(""), 0, 0}},
+                                  cloth::Wind{{}, cloth::Gusts{1.0, 0.0}}, cloth::Wind{{}, cloth::Gusts{-1.0, 1.0}}})
+    EXPECT_THROW(runtime.set_wind(none), std::invalid_argument);
+}
+
 TEST_F(RuntimeTest, WhatIsNoFrameIsRefused) {
   Runtime runtime(scene_);
   runtime.start(joints_at(0.0), at_rest());

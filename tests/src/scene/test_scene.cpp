@@ -7,6 +7,7 @@
 #include "src/scene/saved_drape.h"
 #include "src/scene/scene_write.h"
 #include "tests/support/paths.h"
+#include "tests/support/small_scene.h"
 
 #include <gmock/gmock.h>
 
@@ -91,6 +92,57 @@ TEST(SceneFile, SaysHowACharacterIsToBeRead) {
   EXPECT_EQ(again.import.rest, rig::RestPose::node);
   EXPECT_EQ(again.import.max_influences, 8);
   EXPECT_EQ(again.character, folder / "a.dae");
+}
+
+TEST(SceneFile, AWindBlowsOnWhatHasAir) {
+  const auto folder = scratch_folder();
+  const std::string scene = write_small_scene(folder);
+  const auto read = [&](const std::string& wind) {
+    write_file(folder / "w.json",
+               R"({"character": "body.dae", "motion": "small-motion.json", "garments": ["sheet.json"],
+                                      "wind": )" +
+                   wind + "}");
+    return read_scene(folder / "w.json");
+  };
+  using ::testing::HasSubstr;
+  const auto refused = [&](const std::string& wind) -> std::string {
+    try {
+      load_scene(read(wind));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_TRUE(read_scene(scene).wind.is_still());
+  const cloth::Wind wind = read(R"({"velocity": [3, 0, 1], "gusts": {"speed": 2, "period": 0.5}})").wind;
+  EXPECT_EQ(wind, (cloth::Wind{{3, 0, 1}, cloth::Gusts{2, 0.5, 1}}));
+  EXPECT_EQ(read(R"({"velocity": [3, 0, 1], "gusts": {"speed": 2, "period": 0.5, "seed": 9}})").wind.gusts->seed, 9u);
+  EXPECT_THAT(refused("{}"), HasSubstr("velocity"));
+  EXPECT_THAT(refused("3"), HasSubstr("/wind"));
+  EXPECT_THAT(refused(R"({"velocity": [40, 40, 0]})"), HasSubstr("/wind/velocity: found 56.5685 m/s, expected a wind"));
+  EXPECT_THAT(refused(R"({"velocity": [1, 0, 0], "turbulence": 1})"), HasSubstr("unknown key \"turbulence\""));
+  EXPECT_THAT(refused(R"({"velocity": [1, 0, 0], "gusts": {"speed": 1}})"), HasSubstr("period"));
+  EXPECT_THAT(refused(R"({"velocity": [1, 0, 0], "gusts": {"speed": 1, "period": 0}})"),
+              HasSubstr("/wind/gusts/period: found 0"));
+  EXPECT_THAT(refused(R"({"velocity": [1, 0, 0], "gusts": {"speed": 1, "period": 1, "seed": -1}})"),
+              HasSubstr("/wind/gusts/seed: found -1"));
+  EXPECT_THAT(refused(R"({"velocity": [1, 0, 0]})"),
+              HasSubstr("/wind: found wind, and no garment whose fabric has air"));
+  EXPECT_EQ(refused(R"({"velocity": [0, 0, 0]})"), "") << "none";
+
+  write_file(folder / "sheet.json", R"({"shape": {"grid": {"rows": 9, "columns": 9, "corner": [-0.2, 0.84, -0.2],
+      "across": [0.4, 0, 0], "down": [0, 0, 0.4]}}, "fabric": {"air": true}})");
+  const auto fingerprint = [&](const std::string& more) { return drape_fingerprint(load_scene(read(more))); };
+  const std::uint64_t still = fingerprint(R"({"velocity": [0, 0, 0]})");
+  const std::uint64_t windy = fingerprint(R"({"velocity": [1, 0, 0]})");
+  EXPECT_NE(still, windy);
+  EXPECT_EQ(fingerprint(R"({"velocity": [1, 0, 0], "gusts": {"speed": 1, "period": 1}})"), windy)
+      << "garments are draped without gusts";
+  LoadedScene other = load_scene(read(R"({"velocity": [1, 0, 0]})"));
+  EXPECT_EQ(other.wind, other.description().wind);
+  other.garments[0].fabric.air->friction *= 2.0;
+  EXPECT_NE(drape_fingerprint(other), windy);
+  std::filesystem::remove_all(folder);
 }
 
 TEST(SceneFile, ReadsEveryFormOfMotion) {
