@@ -27,6 +27,7 @@
 #include "cloth/contact/contact_search.h" // IWYU pragma: export
 #include "cloth/contact/self_collision.h" // IWYU pragma: export
 #include "cloth/contact/spatial_hash.h"   // IWYU pragma: export
+#include "cloth/damping.h"                // IWYU pragma: export
 #include "cloth/garment/dihedral.h"       // IWYU pragma: export
 #include "cloth/garment/drape_file.h"     // IWYU pragma: export
 #include "cloth/garment/elements.h"       // IWYU pragma: export

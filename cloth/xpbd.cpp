@@ -3,6 +3,7 @@
 #include "cloth/air/air.h"
 #include "cloth/contact/contact_search.h"
 #include "cloth/contact/self_collision.h"
+#include "cloth/damping.h"
 #include "cloth/detail/solver_parts.h"
 #include "cloth/garment/elements.h"
 #include "cloth/state/tolerances.h"
@@ -19,7 +20,8 @@ template <class T> class Xpbd final : public Solver {
 public:
   Xpbd(const Garment& garment, const SolverOptions& options)
       : garment_(&garment), kernel_(woven_kernel<T>()), sheet_(garment, options.passes > 1), passes_(options.passes),
-        pinned_(pinned_flags(garment)), contacts_(garment, options, sheet_), search_(garment.fabric.contact_offset()) {
+        pinned_(pinned_flags(garment)), damping_(garment), contacts_(garment, options, sheet_),
+        search_(garment.fabric.contact_offset()) {
     for (const Seam& seam : garment.seams)
       seam_shares_.push_back(static_cast<T>(share_of_second(garment, pinned_, seam)));
     if (options.self_collision) {
@@ -85,6 +87,7 @@ private:
   int passes_ = 1;
   std::vector<std::uint8_t> pinned_;
   std::vector<T> seam_shares_;
+  Damping damping_;
   WovenContacts<T> contacts_;           ///< of whole vectors, where the backend leaves contacts to us
   ContactSearch search_;                ///< else
   bool asks_each_ = false;              ///< it is else
@@ -200,6 +203,9 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
   step.h = static_cast<T>(h);
   for (int axis = 0; axis < 3; ++axis) step.gravity[axis] = static_cast<T>(input.gravity[axis]);
   step.kept = static_cast<T>(1.0 / (1.0 + h * (garment_->fabric.drag + input.extra_drag)));
+  const DampedStep damped = damping_.at(h);
+  step.taken = static_cast<T>(damped.taken);
+  step.elastic = static_cast<T>(damped.elastic);
   step.fastest = static_cast<T>(k_fastest_particle);
   step.passes = passes_;
   if (has_air) slow_down(input, 0.0, h);

@@ -16,7 +16,8 @@ namespace tutu::cloth {
 ///   where asked for,  contacts last,  v += (x - x*) / h.
 /// The last line is v = (x - x_old) / h without its rounding: where nothing holds a particle, it falls as if alone.
 /// A constraint C = |x_j - x_i| - L of compliance a = 1 / K takes part with
-///   dlambda = (-C - a/h^2 lambda) / (w_i + w_j + a/h^2)  [Macklin et al. 2016, XPBD, eq. 18].
+///   dlambda = (-C + (1 - s) C(was) - s a/h^2 lambda) / (w_i + w_j + s a/h^2)
+/// [Macklin et al. 2016, XPBD, eq. 18 and 26]: s is what damping lets a substep take back (damping.h).
 /// Order: bending, shear, weft by Gauss-Seidel; then each warp thread as a whole (twice: the second step is Newton's
 /// answer to the first one's linearisation), then once more by Gauss-Seidel.
 ///

@@ -170,6 +170,7 @@ ReadFabric with_keys_of(const JsonValue& json, ReadFabric read) {
   if (const auto v = json.find("shear")) fabric.shear = v->non_negative();
   if (const auto v = json.find("bend")) fabric.bend = v->non_negative();
   if (const auto v = json.find("bend_springs")) fabric.bend_springs = v->non_negative();
+  if (const auto v = json.find("damping")) fabric.damping = v->non_negative();
   if (const auto v = json.find("drag")) {
     fabric.drag = v->non_negative();
     read.states_drag = true;
@@ -182,16 +183,16 @@ ReadFabric with_keys_of(const JsonValue& json, ReadFabric read) {
 
 ReadFabric read_fabric_file(const fs::path& file) {
   const JsonValue json = JsonValue::read(file);
-  json.only_keys(
-      {"source", "density", "stretch", "shear", "bend", "bend_springs", "drag", "air", "thickness", "clearance"});
+  json.only_keys({"source", "density", "stretch", "shear", "bend", "bend_springs", "damping", "drag", "air",
+                  "thickness", "clearance"});
   return with_keys_of(json, {});
 }
 
 Fabric fabric_of(const JsonValue& json) {
   if (json.is_string()) return read_fabric(fabric_file(json));
   if (!json.is_object()) throw json.error("the name of a fabric, a path that ends in .json, or an object");
-  json.only_keys(
-      {"base", "density", "stretch", "shear", "bend", "bend_springs", "drag", "air", "thickness", "clearance"});
+  json.only_keys({"base", "density", "stretch", "shear", "bend", "bend_springs", "damping", "drag", "air", "thickness",
+                  "clearance"});
   const auto base = json.find("base");
   return with_keys_of(json, base ? read_fabric_file(fabric_file(*base)) : ReadFabric{}).whole();
 }

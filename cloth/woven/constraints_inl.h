@@ -9,13 +9,21 @@
 #include "cloth/state/tolerances.h"
 #include "cloth/woven/vectors_inl.h"
 
+#include <array>
+
 HWY_BEFORE_NAMESPACE();
 namespace tutu::cloth::HWY_NAMESPACE {
 
+/// Rows of two blocks that all passes between them are done with before the next rows: they stay in the nearest cache.
+inline constexpr int k_rows_at_once = 15;
+
 // ---- springs
 
+/// What all constraints of a substep share.
 template <class T> struct Limits {
-  Wide<T> per_h2;
+  Wide<T> per_h2;    ///< taken / h^2, 1/s^2
+  Wide<T> kept;      ///< 1 - taken
+  Wide<T> elastic;   ///< WovenStep::elastic
   Wide<T> broken;    ///< length over rest length at which the run has diverged
   Wide<T> bad;       ///< not 0 in lanes that have seen such an edge
   T* room = nullptr; ///< for the positions of two blocks: whole() is to keep them
@@ -45,36 +53,52 @@ template <class T> HWY_INLINE void note_broken(Wide<T> length, Wide<T> rest, Wid
   limits.bad = hn::IfThenElse(holds, limits.bad, hn::Set(d, T(1)));
 }
 
-/// One spring a lane between a and b: dlambda = (-C - at lambda) / (w_a + w_b + at), at = compliance / h^2
-/// [Macklin et al. 2016, XPBD, eq. 18]; positive lambda pulls here.
+/// An edge between two particles a lane, longer or shorter by C than it wants to be.
+template <class T> struct WovenEdge {
+  Wide3<T> d;              ///< from one end to the other, m
+  Wide<T> squared, length; ///< m2, m; above 0
+  Wide<T> residual;        ///< C - kept C(was), times the length, m2
+
+  HWY_INLINE WovenEdge(const Wide3<T>& now, const Wide3<T>& was, Wide<T> rest, const Limits<T>& limits)
+      : d(now), squared(above_zero<T>(dot(now, now))), length(hn::Sqrt(squared)) {
+    // C(was) is C less the change, d . (d - d_was) / length to the first order.
+    const Wide<T> change = dot(now, minus(now, was)), excess = length * (length - rest);
+    const Wide<T> most = limits.elastic * rest * length;
+    residual = hn::NegMulAdd(limits.kept, hn::Min(hn::Max(excess - change, hn::Neg(most)), most), excess);
+  }
+};
+
+/// One spring a lane between a and b: dlambda = (-(C - kept C(was)) - at lambda) / (w_a + w_b + at) (WovenStep::taken);
+/// positive lambda pulls here.
 template <bool k_repeats, class T>
-HWY_INLINE void solve_spring(Wide3<T>& a, Wide3<T>& b, Wide<T> wa, Wide<T> wb, Wide<T> rest, Wide<T> compliance,
-                             T* multiplier, bool first_pass, Limits<T>& limits) {
-  const Wide3<T> d = minus(b, a);
-  const Wide<T> length = length_of<T>(d), at = compliance * limits.per_h2;
-  note_broken<T>(length, rest, wa + wb, limits);
-  Wide<T> residual = length - rest;
+HWY_INLINE void solve_spring(Wide3<T>& a, Wide3<T>& b, const Wide3<T>& was, Wide<T> wa, Wide<T> wb, Wide<T> rest,
+                             Wide<T> compliance, T* multiplier, bool first_pass, Limits<T>& limits) {
+  const WovenEdge<T> edge(minus(b, a), was, rest, limits);
+  const Wide<T> at = compliance * limits.per_h2;
+  note_broken<T>(edge.length, rest, wa + wb, limits);
+  Wide<T> residual = edge.residual;
   if constexpr (k_repeats)
-    if (!first_pass) residual = residual - at * load(multiplier);
-  const Wide<T> weights = wa + wb + at;
-  const Wide<T> step = residual / (length * weights); // lambda's step over the length
+    if (!first_pass) residual = residual - at * load(multiplier) * edge.length;
+  const Wide<T> step = residual / (edge.squared * (wa + wb + at)); // lambda's step over the length
   if constexpr (k_repeats) {
-    const Wide<T> gained = step * length;
+    const Wide<T> gained = step * edge.length;
     hn::Store(first_pass ? gained : load(multiplier) + gained, Tag<T>(), multiplier);
   }
-  const Wide3<T> pull = times(step, d);
+  const Wide3<T> pull = times(step, edge.d);
   a = plus_times<T>(a, wa, pull);
   b = minus_times<T>(b, wb, pull);
 }
 
-/// All springs of one direction between block and block + 1: row + down_a of the one with row + down_b of the other.
+/// Springs of one direction between block and block + 1: row + down_a of the one with row + down_b of the other, for
+/// rows first..last-1.
 template <bool k_repeats, class T>
 void solve_between(const WovenSheetView<T>& sheet, const WovenSprings<T>& springs, T* multipliers, int block,
-                   int down_a, int down_b, int rows, bool first_pass, Limits<T>& limits) {
-  for_columns(sheet, block, 0, rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
+                   int down_a, int down_b, int first, int last, bool first_pass, Limits<T>& limits) {
+  for_columns(sheet, block, first, last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const std::ptrdiff_t at_a = at + down_a * k_lanes, at_b = at + sheet.block_stride + down_b * k_lanes;
     Wide3<T> a = load(sheet.x, at_a), b = load(sheet.x, at_b);
-    solve_spring<k_repeats, T>(a, b, load(row_of(sheet.inverse_mass, block, row + down_a) + lane),
+    solve_spring<k_repeats, T>(a, b, minus(load(sheet.was, at_b), load(sheet.was, at_a)),
+                               load(row_of(sheet.inverse_mass, block, row + down_a) + lane),
                                load(row_of(sheet.inverse_mass, block + 1, row + down_b) + lane),
                                load(row_of(springs.length, block, row) + lane),
                                load(row_of(springs.compliance, block, row) + lane),
@@ -88,56 +112,52 @@ void solve_between(const WovenSheetView<T>& sheet, const WovenSprings<T>& spring
 
 /// Three particles along a thread bent against flatness: the energy B A |c|^2 / (2 l^4), c the second difference, is
 /// that of the curvature of a thin plate along the thread [Bergou et al. 2006, quadratic bending, on a grid]. Linear,
-/// so no angle and no root.
+/// so no angle and no root. Of c before only what is along c counts: turning as a whole bends nothing.
 template <class T>
-HWY_INLINE void solve_bend(Wide3<T>& a, Wide3<T>& b, Wide3<T>& c, Wide<T> wa, Wide<T> wb, Wide<T> wc, Wide<T> ratio,
-                           Wide<T> compliance, Wide<T> per_h2) {
+HWY_INLINE void solve_bend(const WovenSheetView<T>& sheet, const std::array<std::ptrdiff_t, 3>& at,
+                           const std::array<Wide<T>, 3>& w, Wide<T> ratio, Wide<T> compliance,
+                           const Limits<T>& limits) {
+  Wide3<T> a = load(sheet.x, at[0]), b = load(sheet.x, at[1]), c = load(sheet.x, at[2]);
+  const auto curve_of = [&](const Wide3<T>& p, const Wide3<T>& q, const Wide3<T>& r)
+                            HWY_ATTR { return minus(times(ratio, minus(r, q)), minus(q, p)); };
+  const Wide3<T> curve = curve_of(a, b, c);
+  const Wide3<T> before = curve_of(load(sheet.was, at[0]), load(sheet.was, at[1]), load(sheet.was, at[2]));
   const Wide<T> middle = set(T(1)) + ratio; // gradients: 1, -(1 + ratio), ratio
-  const Wide<T> weights = wa + wb * middle * middle + wc * ratio * ratio + compliance * per_h2;
-  const Wide3<T> curve = minus(times(ratio, minus(c, b)), minus(b, a));
-  const Wide3<T> step = times(set(T(1)) / weights, curve);
-  a = minus_times<T>(a, wa, step);
-  b = plus_times<T>(b, wb * middle, step);
-  c = minus_times<T>(c, wc * ratio, step);
+  const Wide<T> weights = w[0] + w[1] * middle * middle + w[2] * ratio * ratio + compliance * limits.per_h2;
+  const Wide<T> squared = above_zero<T>(dot(curve, curve));
+  const Wide3<T> step = times(hn::NegMulAdd(limits.kept, dot(curve, before), squared) / (squared * weights), curve);
+  store(minus_times<T>(a, w[0], step), sheet.x, at[0]);
+  store(plus_times<T>(b, w[1] * middle, step), sheet.x, at[1]);
+  store(minus_times<T>(c, w[2] * ratio, step), sheet.x, at[2]);
 }
 
-template <class T> void bend_weft(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
+template <class T> void bend_weft(const WovenSheetView<T>& sheet, int block, const Limits<T>& limits) {
   for_columns(sheet, block, 0, sheet.rows, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
-    const std::ptrdiff_t at_b = at + sheet.block_stride, at_c = at_b + sheet.block_stride;
-    Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
-    solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
-                  load(row_of(sheet.inverse_mass, block + 1, row) + lane),
-                  load(row_of(sheet.inverse_mass, block + 2, row) + lane),
+    const auto weight = [&](int on) HWY_ATTR { return load(row_of(sheet.inverse_mass, block + on, row) + lane); };
+    solve_bend<T>(sheet, {at, at + sheet.block_stride, at + 2 * sheet.block_stride}, {weight(0), weight(1), weight(2)},
                   load(row_of(sheet.weft_bend.ratio, block, row) + lane),
-                  load(row_of(sheet.weft_bend.compliance, block, row) + lane), per_h2);
-    store(a, sheet.x, at);
-    store(b, sheet.x, at_b);
-    store(c, sheet.x, at_c);
+                  load(row_of(sheet.weft_bend.compliance, block, row) + lane), limits);
   });
 }
 
-template <class T> void bend_warp(const WovenSheetView<T>& sheet, int block, Wide<T> per_h2) {
+template <class T> void bend_warp(const WovenSheetView<T>& sheet, int block, const Limits<T>& limits) {
   const auto bend = [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
-    const std::ptrdiff_t at_b = at + k_lanes, at_c = at_b + k_lanes;
-    Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at_b), c = load(sheet.x, at_c);
-    solve_bend<T>(a, b, c, load(row_of(sheet.inverse_mass, block, row) + lane),
-                  load(row_of(sheet.inverse_mass, block, row + 1) + lane),
-                  load(row_of(sheet.inverse_mass, block, row + 2) + lane),
+    const auto weight = [&](int down) HWY_ATTR { return load(row_of(sheet.inverse_mass, block, row + down) + lane); };
+    solve_bend<T>(sheet, {at, at + k_lanes, at + 2 * k_lanes}, {weight(0), weight(1), weight(2)},
                   load(row_of(sheet.warp_bend.ratio, block, row) + lane),
-                  load(row_of(sheet.warp_bend.compliance, block, row) + lane), per_h2);
-    store(a, sheet.x, at);
-    store(b, sheet.x, at_b);
-    store(c, sheet.x, at_c);
+                  load(row_of(sheet.warp_bend.compliance, block, row) + lane), limits);
   };
   // Every third row: three passes in which no two triples share a particle.
-  for (int colour = 0; colour < 3; ++colour) for_columns(sheet, block, colour, sheet.rows - 2, bend, 3);
+  for (int first = 0; first < sheet.rows - 2; first += k_rows_at_once)
+    for (int colour = 0; colour < 3; ++colour)
+      for_columns(sheet, block, first + colour, std::min(first + k_rows_at_once, sheet.rows - 2), bend, 3);
 }
 
 // ---- warp threads
 
-/// One Newton step of (J M^-1 J^T + at) dlambda = C - at lambda over the whole threads of a block, positive lambda
-/// pulling: tridiagonal, since an edge shares a particle with the next one only. Elimination downwards, substitution
-/// upwards. `multipliers` counts from the block's first row.
+/// One Newton step of (J M^-1 J^T + at) dlambda = C - kept C(was) - at lambda over the whole threads of a block,
+/// positive lambda pulling: tridiagonal, since an edge shares a particle with the next one only. Elimination downwards,
+/// substitution upwards. `multipliers` counts from the block's first row.
 template <class T>
 void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bool first_step, Limits<T>& limits) {
   const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
@@ -149,19 +169,21 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
   T* const upper = nx + 4 * field; // coupling to the edge below, times m
   for (int lane = 0; lane < lanes_in(sheet, block); lane += width) {
     const std::ptrdiff_t start = place(sheet, block, 0) + lane;
-    Wide3<T> above = load(sheet.x, start), direction_above = {set(T(0)), set(T(0)), set(T(0))};
+    Wide3<T> above = load(sheet.x, start), was_above = load(sheet.was, start);
+    Wide3<T> direction_above = {set(T(0)), set(T(0)), set(T(0))};
     Wide<T> w_above = load(row_of(sheet.inverse_mass, block, 0) + lane);
     Wide<T> m = set(T(0)), d = set(T(0));
     for (int k = 0; k < edges; ++k) {
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * k_lanes + lane;
-      const Wide3<T> below = load(sheet.x, start + (k + 1) * k_lanes);
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * k_lanes + lane, lower = start + (k + 1) * k_lanes;
+      const Wide3<T> below = load(sheet.x, lower), was_below = load(sheet.was, lower);
       const Wide<T> w_below = load(row_of(sheet.inverse_mass, block, k + 1) + lane);
-      const Wide3<T> edge = minus(below, above);
-      const Wide<T> length = length_of<T>(edge), rest = load(row_of(sheet.warp.length, block, k) + lane);
-      note_broken<T>(length, rest, w_above + w_below, limits);
-      const Wide3<T> direction = times(set(T(1)) / length, edge);
+      const Wide<T> rest = load(row_of(sheet.warp.length, block, k) + lane);
+      const WovenEdge<T> edge(minus(below, above), minus(was_below, was_above), rest, limits);
+      note_broken<T>(edge.length, rest, w_above + w_below, limits);
+      const Wide<T> per_length = set(T(1)) / edge.length;
+      const Wide3<T> direction = times(per_length, edge.d);
       const Wide<T> compliance = load(row_of(sheet.warp.compliance, block, k) + lane) * limits.per_h2;
-      Wide<T> residual = length - rest;
+      Wide<T> residual = per_length * edge.residual;
       if (!first_step) residual = residual - compliance * load(multipliers + at);
       const Wide<T> coupling = hn::Neg(w_above * dot(direction, direction_above)); // 0 for the first edge
       const Wide<T> to_above = coupling * m;
@@ -171,6 +193,7 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
       store(direction, n, at);
       hn::Store(d, Tag<T>(), right + at);
       above = below;
+      was_above = was_below;
       w_above = w_below;
       direction_above = direction;
     }
@@ -193,20 +216,20 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
   }
 }
 
-/// Gauss-Seidel over the warp edges, those that begin at even rows or those at odd ones.
+/// Gauss-Seidel over every other warp edge, from row `first` to the one below `last`.
 template <class T>
-void sweep_threads(const WovenSheetView<T>& sheet, int block, int parity, T* multipliers, Limits<T>& limits) {
+void sweep_threads(const WovenSheetView<T>& sheet, int block, int first, int last, T* multipliers, Limits<T>& limits) {
   const auto solve = [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     Wide3<T> a = load(sheet.x, at), b = load(sheet.x, at + k_lanes);
-    solve_spring<true, T>(a, b, load(row_of(sheet.inverse_mass, block, row) + lane),
-                          load(row_of(sheet.inverse_mass, block, row + 1) + lane),
-                          load(row_of(sheet.warp.length, block, row) + lane),
-                          load(row_of(sheet.warp.compliance, block, row) + lane),
-                          multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
+    solve_spring<true, T>(
+        a, b, minus(load(sheet.was, at + k_lanes), load(sheet.was, at)),
+        load(row_of(sheet.inverse_mass, block, row) + lane), load(row_of(sheet.inverse_mass, block, row + 1) + lane),
+        load(row_of(sheet.warp.length, block, row) + lane), load(row_of(sheet.warp.compliance, block, row) + lane),
+        multipliers + static_cast<std::ptrdiff_t>(row) * k_lanes + lane, false, limits);
     store(a, sheet.x, at);
     store(b, sheet.x, at + k_lanes);
   };
-  for_columns(sheet, block, parity, sheet.rows - 1, solve, 2);
+  for_columns(sheet, block, first, last, solve, 2);
 }
 
 // ---- tethers
@@ -240,14 +263,18 @@ bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bo
   const bool is_last = block + 1 == sheet.blocks, ends_short = has_short_lanes(sheet) && block + 2 == sheet.blocks;
   if (ends_short) fetch_short(sheet, sheet.x);
   if (is_last) fetch_halo(sheet, sheet.x, 0);
-  const auto between = [&](const WovenSprings<T>& springs, T* multipliers, int down_a, int down_b, int rows) HWY_ATTR {
-    return whole(sheet, block, limits, [&]() HWY_ATTR {
-      solve_between<k_repeats, T>(sheet, springs, multipliers, block, down_a, down_b, rows, first_pass, limits);
-    });
-  };
-  const bool is_whole = (!with_shear || (between(sheet.falling, sheet.multipliers[2], 0, 1, sheet.rows - 1) &&
-                                         between(sheet.rising, sheet.multipliers[3], 1, 0, sheet.rows - 1))) &&
-                        between(sheet.weft, sheet.multipliers[1], 0, 0, sheet.rows);
+  bool is_whole = true;
+  for (int first = 0; first < sheet.rows && is_whole; first += k_rows_at_once) {
+    const int last = std::min(first + k_rows_at_once, sheet.rows), last_cell = std::min(last, sheet.rows - 1);
+    const auto between = [&](const WovenSprings<T>& springs, T* multipliers, int down_a, int down_b, int end) HWY_ATTR {
+      return whole(sheet, block, limits, [&]() HWY_ATTR {
+        solve_between<k_repeats, T>(sheet, springs, multipliers, block, down_a, down_b, first, end, first_pass, limits);
+      });
+    };
+    is_whole = (!with_shear || (between(sheet.falling, sheet.multipliers[2], 0, 1, last_cell) &&
+                                between(sheet.rising, sheet.multipliers[3], 1, 0, last_cell))) &&
+               between(sheet.weft, sheet.multipliers[1], 0, 0, last);
+  }
   if (ends_short) {
     return_short(sheet, sheet.x);
     clear_short(sheet, sheet.blocks - 1);
@@ -264,21 +291,26 @@ bool solve_down(const WovenSheetView<T>& sheet, const WovenStep<T>& step, int bl
   for (int k = 0; k < step.newton_steps && is_whole; ++k)
     is_whole = whole(sheet, block, limits,
                      [&]() HWY_ATTR { solve_threads(sheet, block, multipliers, first_pass && k == 0, limits); });
-  for (int k = 0; k < 2 * step.closing_sweeps && is_whole; ++k)
-    is_whole = whole(sheet, block, limits, [&]() HWY_ATTR { sweep_threads(sheet, block, k % 2, multipliers, limits); });
+  for (int k = 0; k < step.closing_sweeps; ++k)
+    for (int first = 0; first < sheet.rows - 1; first += k_rows_at_once) {
+      const int last = std::min(first + k_rows_at_once, sheet.rows - 1);
+      for (int row = first; row < first + 2 && is_whole; ++row)
+        is_whole = whole(sheet, block, limits,
+                         [&]() HWY_ATTR { sweep_threads(sheet, block, row, last, multipliers, limits); });
+    }
   return is_whole;
 }
 
-template <class T> void bend_all(const WovenSheetView<T>& sheet, Wide<T> per_h2) {
+template <class T> void bend_all(const WovenSheetView<T>& sheet, const Limits<T>& limits) {
   const int last = sheet.blocks - 1;
   const bool is_uneven = has_short_lanes(sheet);
   for (int block = 0; block + 2 < sheet.blocks; ++block) {
     if (is_uneven && block + 2 == last) fetch_short(sheet, sheet.x);
-    bend_weft(sheet, block, per_h2);
+    bend_weft(sheet, block, limits);
   }
   fetch_halo(sheet, sheet.x, 0);
   if (is_uneven) fetch_turned(sheet, sheet.x, 1, last + 1, sheet.long_lanes, sheet.lanes);
-  bend_weft(sheet, last - 1, per_h2);
+  bend_weft(sheet, last - 1, limits);
   if (is_uneven) {
     return_short(sheet, sheet.x);
     return_turned(sheet, sheet.x, 1, last + 1, sheet.long_lanes, sheet.lanes);
@@ -286,17 +318,28 @@ template <class T> void bend_all(const WovenSheetView<T>& sheet, Wide<T> per_h2)
     clear_short(sheet, last + 1);
   }
   fetch_halo(sheet, sheet.x, 1); // not before: of three blocks, block 1 is the last but one
-  bend_weft(sheet, last, per_h2);
+  bend_weft(sheet, last, limits);
   return_halo(sheet, sheet.x, 0);
   return_halo(sheet, sheet.x, 1);
-  for (int block = 0; block < sheet.blocks; ++block) bend_warp(sheet, block, per_h2);
+  for (int block = 0; block < sheet.blocks; ++block) bend_warp(sheet, block, limits);
+}
+
+/// Where the substep began, behind the lanes' ends: as fetch_halo() and fetch_short() have it for where it is.
+template <class T> void fetch_starts(const WovenSheetView<T>& sheet) {
+  if (has_short_lanes(sheet)) fetch_short(sheet, sheet.was);
+  fetch_halo(sheet, sheet.was, 0);
+  if (!sheet.has_bend) return;
+  if (has_short_lanes(sheet)) fetch_turned(sheet, sheet.was, 1, sheet.blocks, sheet.long_lanes, sheet.lanes);
+  fetch_halo(sheet, sheet.was, 1);
 }
 
 template <bool k_repeats, class T>
 bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
   const Tag<T> tag;
-  Limits<T> limits = {set(T(1) / (step.h * step.h)), set(T(1.0 + k_diverged_stretch)), hn::Zero(tag), room};
-  if (sheet.has_bend) bend_all(sheet, limits.per_h2);
+  Limits<T> limits = {set(step.taken / (step.h * step.h)), set(T(1) - step.taken), set(step.elastic),
+                      set(T(1.0 + k_diverged_stretch)),    hn::Zero(tag),          room};
+  fetch_starts(sheet);
+  if (sheet.has_bend) bend_all(sheet, limits);
   if (sheet.tethers.length)
     for (int block = 0; block < sheet.blocks; ++block)
       if (!whole(sheet, block, limits, [&]() HWY_ATTR { pull_tethers(sheet, block, limits); })) return false;

@@ -89,13 +89,14 @@ template <class T> bool needs_halo(const WovenSheetView<T>& sheet, int block) {
 }
 
 template <class T> struct WovenStep {
-  T h = 0;                ///< s
-  T gravity[3] = {};      ///< m/s2
-  T kept = 1;             ///< share of the velocity that drag leaves in h
-  T fastest = 0;          ///< m/s; faster particles are slowed to this
-  int passes = 1;         ///< over all constraints
-  int newton_steps = 2;   ///< of each thread's line solve, a pass
-  int closing_sweeps = 1; ///< Gauss-Seidel over the warp edges after it
+  T h = 0;                  ///< s
+  T gravity[3] = {};        ///< m/s2
+  T kept = 1;               ///< share of the velocity that drag leaves in h
+  T taken = 1, elastic = 0; ///< as those of DampedStep (cloth/damping.h)
+  T fastest = 0;            ///< m/s; faster particles are slowed to this
+  int passes = 1;           ///< over all constraints
+  int newton_steps = 2;     ///< of each thread's line solve, a pass
+  int closing_sweeps = 1;   ///< Gauss-Seidel over the warp edges after it
 };
 
 /// The air of a substep: AirInStep of cloth/air/air_inl.h in plain numbers.

@@ -89,12 +89,14 @@ HWY_INLINE void for_columns(const WovenSheetView<T>& sheet, int block, int first
     for (int lane = 0; lane < lanes_in(sheet, block); lane += width) f(place(sheet, block, row) + lane, row, lane);
 }
 
-/// Length of an edge, above 0.
-template <class T> HWY_INLINE Wide<T> length_of(const Wide3<T>& d) {
-  // Far below any rest length, and its square is still a normal number.
+/// A square that may be divided by.
+template <class T> HWY_INLINE Wide<T> above_zero(Wide<T> squared) {
+  // Far below that of any rest length, and still a normal number.
   constexpr T k_least_squared = T(1e-30);
-  return hn::Sqrt(dot(d, d) + set(k_least_squared)); // a sum and no maximum, which forgets what is no number
+  return squared + set(k_least_squared); // a sum and no maximum, which forgets what is no number
 }
+/// Length of an edge, above 0.
+template <class T> HWY_INLINE Wide<T> length_of(const Wide3<T>& d) { return hn::Sqrt(above_zero<T>(dot(d, d))); }
 
 // ---- the ring's end
 

@@ -15,7 +15,7 @@ void fuzz_settings(std::string_view input) {
     const app::SettingValues values = app::setting_values(settings[k]);
     require(app::setting_options(values, own).empty() == (k == 0), "no setting is there twice");
     (void)app::difference(values, own);
-    if (!app::fitted_count(settings[k])) (void)app::cell_key({"scene", "reference", {}, settings[k], 1});
+    if (!app::fitted_count(settings[k])) (void)app::cell_key({"scene", "reference", {}, settings[k]});
   }
 }
 

@@ -67,6 +67,7 @@ public:
   /// Edges and faces asked so far whose distance was within k_grazing of 0: single precision decides these its own way,
   /// above all where an earlier contact has just put a shared corner on the surface.
   std::int64_t grazing = 0;
+  static constexpr int k_rows_at_once = 15; ///< rows of a block that all that joins it to the next is done with at once
   static constexpr double k_grazing = 1e-6; ///< m, the rounding of single precision at these places, some times over
 
   /// The air for h seconds, triangle by triangle: v = w + (I + h D / m)^-1 (v - w) [cloth/air/air.h].
@@ -103,7 +104,7 @@ public:
     for (std::vector<Edge>* family : {&warp_, &weft_, &falling_, &rising_})
       for (Edge& edge : *family) edge.lambda = 0.0;
     const bool repeats = step.passes > 1 || !tethers_.empty();
-    if (garment_->fabric.bend > 0.0) bend(step.h);
+    if (garment_->fabric.bend > 0.0) bend(step);
     for (const cloth::Tether& tether : tethers_) {
       const Vec3 d = x[tether.particle] - x[tether.anchor];
       const double longest = cloth::longest_of(tether, garment_->fabric);
@@ -112,21 +113,25 @@ public:
     }
     for (int pass = 0; pass < step.passes; ++pass) {
       for (int block = 0; block < blocks_; ++block) {
-        if (garment_->fabric.shear > 0.0)
-          for (std::vector<Edge>* family : {&falling_, &rising_})
-            for_block(block, 0, rows_ - 1, [&](int i) { solve((*family)[i], step.h, repeats); });
-        for_block(block, 0, rows_, [&](int i) { solve(weft_[i], step.h, repeats); });
+        for (int first = 0; first < rows_; first += k_rows_at_once) {
+          const int last = std::min(first + k_rows_at_once, rows_), last_cell = std::min(last, rows_ - 1);
+          if (garment_->fabric.shear > 0.0)
+            for (std::vector<Edge>* family : {&falling_, &rising_})
+              for_block(block, first, last_cell, [&](int i) { solve((*family)[i], step, repeats); });
+          for_block(block, first, last, [&](int i) { solve(weft_[i], step, repeats); });
+        }
       }
       for (int block = 0; block < blocks_; ++block) {
-        for (int k = 0; k < step.newton_steps; ++k) for_block(block, 0, 1, [&](int i) { solve_thread(i, step.h); });
+        for (int k = 0; k < step.newton_steps; ++k) for_block(block, 0, 1, [&](int i) { solve_thread(i, step); });
         for (int k = 0; k < step.closing_sweeps; ++k)
-          for (int parity = 0; parity < 2; ++parity)
-            for (int row = parity; row + 1 < rows_; row += 2)
-              for_block(block, row, row + 1, [&](int i) { solve(warp_[i], step.h, true); });
+          for (int first = 0; first + 1 < rows_; first += k_rows_at_once)
+            for (int begin = first; begin < first + 2; ++begin)
+              for (int row = begin; row < std::min(first + k_rows_at_once, rows_ - 1); row += 2)
+                for_block(block, row, row + 1, [&](int i) { solve(warp_[i], step, true); });
       }
       if (tethers_.empty()) continue;
       for (int block = blocks_ - 1; block >= 0; --block)
-        for_block(block, 0, rows_, [&](int i) { solve(weft_[i], step.h, true); });
+        for_block(block, 0, rows_, [&](int i) { solve(weft_[i], step, true); });
     }
     return whole_;
   }
@@ -245,34 +250,44 @@ private:
     if (!(length <= (1.0 + cloth::k_diverged_stretch) * edge.rest)) whole_ = false;
   }
 
-  /// dlambda = (C - at lambda) / (w_i + w_j + at), at = 1 / (K h^2).
-  void solve(Edge& edge, double h, bool with_lambda) {
-    if (edge.stiffness == 0.0) return;
-    const Vec3 d = x[edge.j] - x[edge.i];
-    const double length = d.norm(), at = 1.0 / (edge.stiffness * h * h);
+  /// What an edge is solved for at this moment: C - (1 - taken) C(was).
+  struct Solved {
+    Vec3 direction;
+    double residual, at; ///< m, 1 / (K h^2) times taken
+  };
+  Solved solved(const Edge& edge, const cloth::WovenStep<double>& step) {
+    const Vec3 d = x[edge.j] - x[edge.i], before = was[edge.j] - was[edge.i];
+    const double length = d.norm(), excess = length - edge.rest, most = step.elastic * edge.rest;
     check(edge, length);
-    const double wi = inverse_mass_[edge.i], wj = inverse_mass_[edge.j];
-    const double gained = (length - edge.rest - (with_lambda ? at * edge.lambda : 0.0)) / (wi + wj + at);
-    edge.lambda += gained;
-    x[edge.i] += wi * gained / length * d;
-    x[edge.j] -= wj * gained / length * d;
+    const double excess_before = excess - d.dot(d - before) / length; // to the first order
+    return {d / length, excess - (1.0 - step.taken) * std::clamp(excess_before, -most, most),
+            step.taken / (edge.stiffness * step.h * step.h)};
   }
 
-  /// (J W J^T + at) dlambda = C - at lambda over the thread that starts at particle `top`, as a dense system.
-  void solve_thread(int top, double h) {
+  /// dlambda = (residual - at lambda) / (w_i + w_j + at).
+  void solve(Edge& edge, const cloth::WovenStep<double>& step, bool with_lambda) {
+    if (edge.stiffness == 0.0) return;
+    const Solved now = solved(edge, step);
+    const double wi = inverse_mass_[edge.i], wj = inverse_mass_[edge.j];
+    const double gained = (now.residual - (with_lambda ? now.at * edge.lambda : 0.0)) / (wi + wj + now.at);
+    edge.lambda += gained;
+    x[edge.i] += wi * gained * now.direction;
+    x[edge.j] -= wj * gained * now.direction;
+  }
+
+  /// (J W J^T + at) dlambda = residual - at lambda over the thread that starts at particle `top`, as a dense system.
+  void solve_thread(int top, const cloth::WovenStep<double>& step) {
     const int edges = rows_ - 1;
     Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(edges, 3 * rows_); // of -C: positive lambda pulls
     Eigen::VectorXd weights(3 * rows_), right(edges), at(edges);
     for (int row = 0; row < rows_; ++row) weights.segment<3>(3 * row).setConstant(inverse_mass_[top + row * columns_]);
     for (int k = 0; k < edges; ++k) {
-      const int i = top + k * columns_;
-      const Edge& edge = warp_[i];
-      const Vec3 d = x[i + columns_] - x[i];
-      check(edge, d.norm());
-      gradient.block<1, 3>(k, 3 * k) = d.normalized().transpose();
-      gradient.block<1, 3>(k, 3 * k + 3) = -d.normalized().transpose();
-      at[k] = 1.0 / (edge.stiffness * h * h);
-      right[k] = d.norm() - edge.rest - at[k] * edge.lambda;
+      const Edge& edge = warp_[top + k * columns_];
+      const Solved now = solved(edge, step);
+      gradient.block<1, 3>(k, 3 * k) = now.direction.transpose();
+      gradient.block<1, 3>(k, 3 * k + 3) = -now.direction.transpose();
+      at[k] = now.at;
+      right[k] = now.residual - at[k] * edge.lambda;
     }
     Eigen::MatrixXd system = gradient * weights.asDiagonal() * gradient.transpose();
     system.diagonal() += at;
@@ -282,28 +297,32 @@ private:
     for (int row = 0; row < rows_; ++row) x[top + row * columns_] += way.segment<3>(3 * row);
   }
 
-  void bend(double h) {
+  void bend(const cloth::WovenStep<double>& step) {
     for (int block = 0; block < blocks_; ++block)
       for_block(block, 0, rows_, [&](int i) {
         const std::optional<int> next = right_of(i), last = next ? right_of(*next) : std::nullopt;
-        if (last) solve_bend(i, *next, *last, h);
+        if (last) solve_bend(i, *next, *last, step);
       });
     for (int block = 0; block < blocks_; ++block)
-      for (int colour = 0; colour < 3; ++colour)
-        for (int row = colour; row + 2 < rows_; row += 3)
-          for_block(block, row, row + 1, [&](int i) { solve_bend(i, i + columns_, i + 2 * columns_, h); });
+      for (int first = 0; first + 2 < rows_; first += k_rows_at_once)
+        for (int colour = 0; colour < 3; ++colour)
+          for (int row = first + colour; row < std::min(first + k_rows_at_once, rows_ - 2); row += 3)
+            for_block(block, row, row + 1, [&](int i) { solve_bend(i, i + columns_, i + 2 * columns_, step); });
   }
 
   /// Energy B A kappa^2 / 2 over the middle particle's area A, kappa = c / (l1 (l1 + l2) / 2),
   /// c = (x_c - x_b) l1 / l2 - (x_b - x_a): a constraint c = 0 of compliance (l1 (l1 + l2) / 2)^2 / (B A).
-  void solve_bend(int a, int b, int c, double h) {
+  void solve_bend(int a, int b, int c, const cloth::WovenStep<double>& step) {
     const auto& rest = garment_->rest_positions;
     const double l1 = (rest[b] - rest[a]).norm(), l2 = (rest[c] - rest[b]).norm(), ratio = l1 / l2;
     const double area = garment_->masses[b] / garment_->fabric.density, scale = 0.5 * l1 * (l1 + l2);
     const double compliance = scale * scale / (garment_->fabric.bend * area);
     const double wa = inverse_mass_[a], wb = inverse_mass_[b], wc = inverse_mass_[c];
-    const double denominator = wa + wb * (1.0 + ratio) * (1.0 + ratio) + wc * ratio * ratio + compliance / (h * h);
-    const Vec3 lambda = -(ratio * (x[c] - x[b]) - (x[b] - x[a])) / denominator;
+    const auto curve_of = [&](const std::vector<Vec3>& at) { return Vec3(ratio * (at[c] - at[b]) - (at[b] - at[a])); };
+    const Vec3 curve = curve_of(x), along = curve.normalized();
+    const double g = 1.0 / step.taken - 1.0, weights = wa + wb * (1.0 + ratio) * (1.0 + ratio) + wc * ratio * ratio;
+    const double change = along.dot(curve - curve_of(was)); // along it alone: what turns is not damped
+    const Vec3 lambda = -(curve.norm() + g * change) / ((1.0 + g) * weights + compliance / (step.h * step.h)) * along;
     x[a] += wa * lambda; // the gradients of c: 1, -(1 + ratio), ratio
     x[b] -= wb * (1.0 + ratio) * lambda;
     x[c] += wc * ratio * lambda;

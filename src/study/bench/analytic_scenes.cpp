@@ -1,5 +1,7 @@
 #include "src/study/bench/analytic_scenes.h"
-#include "cloth/garment/springs.h"
+
+#include "src/study/bench/stand.h"
+#include "src/study/bench/swing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,62 +13,7 @@
 namespace tutu::app {
 namespace {
 
-constexpr double k_gravity = 9.81;                                     // m/s2
-constexpr double k_frame = 1.0 / k_stability_frames_per_second;        // s
-constexpr double k_nothing = std::numeric_limits<double>::quiet_NaN(); // a run that broke has no figures
-
-cloth::Fabric airless(double stretch) {
-  cloth::Fabric fabric;
-  fabric.stretch = stretch;
-  fabric.drag = 0.0;
-  return fabric;
-}
-
-cloth::Garment sheet(const cloth::GridShape& shape, const cloth::Fabric& fabric,
-                     std::vector<cloth::Attachment> attachments = {}) {
-  cloth::GarmentDescription description;
-  description.name = "sheet";
-  description.shape = shape;
-  description.fabric = fabric;
-  description.attachments = std::move(attachments);
-  return cloth::build_garment(description);
-}
-
-/// A garment between pins that stand still, with at most a ground.
-class Stand {
-public:
-  Stand(const cloth::Garment& garment, const RunSettings& setup)
-      : garment_(&garment), solver_(cloth::make_solver(garment, setup)), query_(proxies::make_query(setup.backend)) {
-    for (const cloth::Pin& pin : garment.pins) pins_.push_back(garment.rest_positions[pin.particle]);
-    input_.seconds = k_frame;
-    input_.substeps = setup.substeps;
-  }
-  cloth::FrameInput& input() { return input_; }
-  cloth::Solver& solver() { return *solver_; }
-  std::vector<Vec3>& pins() { return pins_; }
-
-  /// Whether the frame held.
-  bool advance() {
-    input_.pins_start = input_.pins_end = pins_;
-    return !solver_->step(input_, *query_);
-  }
-
-  double total_energy() const {
-    const cloth::Particles& particles = solver_->particles();
-    double sum = cloth::elastic_energy(*garment_, particles.positions);
-    for (int i = 0; i < particles.count(); ++i)
-      sum +=
-          garment_->masses[i] * (0.5 * particles.velocities[i].squaredNorm() + k_gravity * particles.positions[i].y());
-    return sum;
-  }
-
-private:
-  const cloth::Garment* garment_;
-  std::unique_ptr<cloth::Solver> solver_;
-  std::unique_ptr<proxies::CollisionQuery> query_;
-  std::vector<Vec3> pins_;
-  cloth::FrameInput input_;
-};
+constexpr double k_frame = Stand::k_frame, k_gravity = Stand::k_gravity;
 
 /// How far the sheet's centre has slid down a slope after 2 s, m.
 double slide(double angle, double friction, const RunSettings& setup) {
@@ -84,16 +31,6 @@ double slide(double angle, double friction, const RunSettings& setup) {
   for (int i = 0; i < garment.particle_count(); ++i)
     moved += (stand.solver().particles().positions[i] - garment.rest_positions[i]) / garment.particle_count();
   return moved.dot(downhill);
-}
-
-/// Greatest rise of a series above any earlier value.
-double greatest_rise(const std::vector<double>& values) {
-  double lowest = values.front(), rise = 0.0;
-  for (const double v : values) {
-    rise = std::max(rise, v - lowest);
-    lowest = std::min(lowest, v);
-  }
-  return rise;
 }
 
 } // namespace
@@ -291,6 +228,7 @@ const std::vector<AnalyticFamily>& analytic_families() {
       {"pendulum", "period and energy of a swing", pendulum},
       {"catenary", "the sag of a hanging band", catenary},
       {"hang", "how far a sheet gives by its own weight", hang},
+      {"swing", "how fast sheets come to rest, which substeps must not change", swing},
       {"energy", "a shaken sheet left alone never gains energy", energy},
   };
   return families;

@@ -56,9 +56,8 @@ struct Worst {
       (run.*tally).total += (other.*tally).total;
     }
     run.recoveries += other.recoveries;
-    for (double StabilityRun::*figure :
-         {&StabilityRun::longer_p99, &StabilityRun::longer_max, &StabilityRun::depth, &StabilityRun::surface,
-          &StabilityRun::deepest, &StabilityRun::speed})
+    for (double StabilityRun::*figure : {&StabilityRun::longer_p99, &StabilityRun::longer_max, &StabilityRun::depth,
+                                         &StabilityRun::surface, &StabilityRun::deepest, &StabilityRun::speed})
       run.*figure = std::max(run.*figure, other.*figure);
     worse_of(run.left, other.left);
     run.most_substeps = std::max(run.most_substeps, other.most_substeps);
@@ -82,23 +81,22 @@ void tell(const std::string& name, Worst& worst, std::uint64_t hash, StabilityRe
         fmt::format("    stands in limbs in {}; {:.2f} mm deep at most\n", standing(run.limbs), 1e3 * run.deepest);
   if (run.itself.frames > 0) report.text += fmt::format("    stands in itself in {}\n", standing(run.itself));
   for (const std::string& why : worst.broken) report.text += fmt::format("    {}\n", why);
-  report.json["variants"].push_back(
-      {{"name", name},
-       {"runs", worst.runs},
-       {"passed", worst.passed},
-       {"crossings", run.crossings},
-       {"pierced", run.pierced},
-       {"through", {{"limbs", json_of(run.limbs)}, {"itself", json_of(run.itself)}}},
-       {"longer_pct", {{"p99", 100.0 * run.longer_p99}, {"max", 100.0 * run.longer_max}}},
-       {"pen_mm", {{"max", 1e3 * run.depth}}},
-       {"surface_mm", {{"max", 1e3 * run.surface}}},
-       {"deepest_mm", 1e3 * run.deepest},
-       {"speed", run.speed},
-       {"recoveries", run.recoveries},
-       {"most_substeps", run.most_substeps},
-       {"ms", {{"median", ms}}},
-       {"broken", worst.broken},
-       {"state_hash", hex(hash)}});
+  report.json["variants"].push_back({{"name", name},
+                                     {"runs", worst.runs},
+                                     {"passed", worst.passed},
+                                     {"crossings", run.crossings},
+                                     {"pierced", run.pierced},
+                                     {"through", {{"limbs", json_of(run.limbs)}, {"itself", json_of(run.itself)}}},
+                                     {"longer_pct", {{"p99", 100.0 * run.longer_p99}, {"max", 100.0 * run.longer_max}}},
+                                     {"pen_mm", {{"max", 1e3 * run.depth}}},
+                                     {"surface_mm", {{"max", 1e3 * run.surface}}},
+                                     {"deepest_mm", 1e3 * run.deepest},
+                                     {"speed", run.speed},
+                                     {"recoveries", run.recoveries},
+                                     {"most_substeps", run.most_substeps},
+                                     {"ms", {{"median", ms}}},
+                                     {"broken", worst.broken},
+                                     {"state_hash", hex(hash)}});
 }
 
 StabilityReport report_scenes(const StabilityFamily& family, const RunSettings& setup, int runs,

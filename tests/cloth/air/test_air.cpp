@@ -3,7 +3,7 @@
 #include "cloth/air/air.h"
 #include "cloth/air/wind.h"
 #include "cloth/solver.h"
-#include "tests/support/mesh_sheet.h"
+#include "src/study/bench/mesh_sheet.h"
 
 #include <cmath>
 #include <cstdio>
@@ -41,7 +41,7 @@ Garment sheet(const Kind& kind, const Fabric& fabric, const Vec3& across, const 
   description.file = "sheet";
   description.fabric = fabric;
   const Vec3 corner(-0.2, 1, 0);
-  if (kind.is_mesh) description.shape = test::mesh_sheet(9, corner, across, down, 0.1);
+  if (kind.is_mesh) description.shape = app::mesh_sheet(9, corner, across, down, 0.1);
   else description.shape = GridShape{11, 10, corner, across, down};
   if (held) {
     description.attachments.emplace_back();

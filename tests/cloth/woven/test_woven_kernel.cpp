@@ -1,4 +1,5 @@
 // The kernels against a twin in plain double, stage by stage, on every target that this processor runs.
+#include "cloth/damping.h"
 #include "cloth/woven/sheet.h"
 #include "proxies/distance/signed_distance.h"
 #include "tests/support/simd_targets.h"
@@ -28,13 +29,15 @@ template <class T> struct Bound {
 
 template <class T> T rounded(double value) { return static_cast<T>(static_cast<float>(value)); }
 
-template <class T> WovenStep<T> step_of(int passes = 1) {
+template <class T> WovenStep<T> step_of(int passes = 1, const DampedStep& damped = {}) {
   WovenStep<T> step;
   step.h = static_cast<T>(k_h);
   step.gravity[1] = T(-9.81);
   step.kept = T(0.999);
   step.fastest = T(3);
   step.passes = passes;
+  step.taken = static_cast<T>(damped.taken);
+  step.elastic = static_cast<T>(damped.elastic);
   return step;
 }
 
@@ -265,11 +268,11 @@ TYPED_TEST(WovenKernels, Constraints) {
   using T = TypeParam;
   Worst worst{"constraints"};
   this->everywhere([&](const Garment& garment) {
-    for (const int passes : {1, 2, 3}) {
+    for (const auto& [passes, damped] : {std::pair{1, DampedStep{0.7, 0.02}}, {2, {1.25, 0.05}}, {3, {1.0, 0.0}}}) {
       Both<T> both(garment, 7, passes > 1);
       both.predict();
-      EXPECT_TRUE(both.kernel.constraints(both.view, step_of<T>(passes))) << passes << " passes";
-      EXPECT_TRUE(both.twin.constraints(step_of<double>(passes)));
+      EXPECT_TRUE(both.kernel.constraints(both.view, step_of<T>(passes, damped))) << passes << " passes";
+      EXPECT_TRUE(both.twin.constraints(step_of<double>(passes, damped)));
       worst.add(both.worst_x());
       EXPECT_LT(both.worst_x(), Bound<T>::constraints) << passes << " passes";
     }

@@ -1,5 +1,6 @@
 // Whole frames of the default solver against the twin, which asks every particle, edge and face for every collider in
 // every substep: what the solver skips must not have mattered.
+#include "cloth/damping.h"
 #include "cloth/solver.h"
 #include "cloth/woven/sheet.h"
 #include "cloth/woven/sweep.h"
@@ -28,6 +29,9 @@ bool frame_of(test::WovenTwin& twin, const Garment& garment, const FrameInput& i
   step.kept = 1.0 / (1.0 + h * (garment.fabric.drag + input.extra_drag));
   step.fastest = k_fastest_particle;
   step.passes = passes;
+  const DampedStep damped = Damping(garment).at(h);
+  step.taken = damped.taken;
+  step.elastic = damped.elastic;
   const auto close = [&] {
     for (const Seam& seam : garment.seams) {
       const double wi = twin.inverse_mass(seam.i), wj = twin.inverse_mass(seam.j);
