@@ -141,6 +141,7 @@ std::string reference_fingerprint(const LoadedScene& scene, const ReferencePlan&
   for (const float weight : scene.character.skin.weights) hash.add(static_cast<double>(weight));
   for (const auto slot : scene.character.skin.slots) hash.add(static_cast<std::uint64_t>(slot));
   add_motion(scene, hash);
+  for (const cloth::Garment& garment : scene.garments) hash.add(garment.fabric.damping);
   for (const cloth::Garment& garment : scene.garments)
     for (const auto& t : garment.triangles)
       for (const std::uint32_t corner : t) hash.add(std::uint64_t{corner});

@@ -64,20 +64,21 @@ TEST_F(RunEndCommand, WhatIsWellEndsWithoutAWord) {
 
 TEST_F(RunEndCommand, ClothInTheBodyIsToldWhateverTheProxiesSay) {
   // Through the middle of the trunk, of which the proxies know a thread: off its axis by the thread and 2 mm of cloth,
-  // 117 mm deep in a round of 120 mm; the skin has 24 sides, and is up to 1 mm nearer.
+  // 117 mm deep in a round of 120 mm; the skin has 24 sides, and is up to 1 mm nearer; falling, the cloth leaves the
+  // axis by 1 or 2 mm more.
   wear(0.5, 300);
   write_file(folder_ / "proxies.json", proxies_json({{{0, 0.3, 0}, {0, 0.7, 0}, 0.001}}));
   const json figures = play({"--frames", "3"});
   EXPECT_THAT(last_line(), StartsWith("tutu: warning: sheet ends with its surface 1"));
   EXPECT_THAT(last_line(), HasSubstr(" mm deep in the body (by particle 40)"));
-  EXPECT_NEAR(figures["end"]["garments"].at(0)["surface_mm"]["body"], 116.0, 1.0);
+  EXPECT_NEAR(figures["end"]["garments"].at(0)["surface_mm"]["body"], 115.5, 1.5);
   EXPECT_LT(figures["end"]["garments"].at(0)["surface_mm"]["proxies"], 2.0);
 
   outcome_ = run_program({"validate", scene_, "--json", figures_.string(), "--samples", "200", "--every", "6"});
   EXPECT_EQ(outcome_.status, 0) << outcome_.output;
   EXPECT_THAT(last_line(), StartsWith("tutu: warning: sheet ends with its surface 1"));
   const json cloth = json::parse(read_file(figures_))["cloth_in_body"];
-  EXPECT_NEAR(cloth["surface_max_mm"], 116.0, 1.0);
+  EXPECT_NEAR(cloth["surface_max_mm"], 115.5, 1.5);
   EXPECT_EQ("tutu: warning: " + cloth["end"]["warning"].get<std::string>(), last_line());
 }
 

@@ -62,6 +62,7 @@ protected:
 };
 
 TEST_F(ReferenceRuns, IsRefinedTwiceAndComesCloser) {
+  for (cloth::Garment& garment : scene_.garments) garment.fabric.damping = 0.02; // the fabric's in all these substeps
   const auto reference = obtain();
   ASSERT_TRUE(reference.has_value());
   ASSERT_EQ(reference->refinements.size(), 2u);
