@@ -16,9 +16,6 @@ Damping::Damping(const Garment& garment) : time_(garment.fabric.damping) {
   elastic_ = k_load * garment.fabric.density * longest / garment.fabric.stretch;
 }
 
-DampedStep Damping::at(double h) const {
-  constexpr double k_most = 1.25;
-  return {h < k_most * time_ ? h / time_ : k_most, elastic_};
-}
+DampedStep Damping::at(double h) const { return {h < time_ ? h / time_ : 1.0, elastic_}; }
 
 } // namespace tutu::cloth
