@@ -86,26 +86,32 @@ std::vector<double> strains_of(const Garment& garment, const Particles& particle
   return strains;
 }
 
-ThreadStrains thread_strains(const MeasuredParts& parts, std::span<const Vec3> positions) {
-  std::vector<double> longer, shorter, held_longer;
+namespace {
+
+/// Gives every free thread's lengthening and shortening, and every held one's lengthening, to what gathers them.
+template <class Longer, class Shorter, class HeldLonger>
+void tell_strains(const MeasuredParts& parts, std::span<const Vec3> positions, const Longer& longer,
+                  const Shorter& shorter, const HeldLonger& held_longer) {
   for (const int k : parts.free_threads) {
     const double strain = strain_of(parts.garment->springs[k], positions);
-    longer.push_back(std::max(strain, 0.0));
-    shorter.push_back(std::max(-strain, 0.0));
+    longer(std::max(strain, 0.0));
+    shorter(std::max(-strain, 0.0));
   }
-  for (const int k : parts.held_threads)
-    held_longer.push_back(std::max(strain_of(parts.garment->springs[k], positions), 0.0));
+  for (const int k : parts.held_threads) held_longer(std::max(strain_of(parts.garment->springs[k], positions), 0.0));
+}
+
+} // namespace
+
+ThreadStrains thread_strains(const MeasuredParts& parts, std::span<const Vec3> positions) {
+  std::vector<double> longer, shorter, held_longer;
+  const auto into = [](std::vector<double>& samples) { return [&](double sample) { samples.push_back(sample); }; };
+  tell_strains(parts, positions, into(longer), into(shorter), into(held_longer));
   return {spread(std::move(longer)), spread(std::move(shorter)), spread(std::move(held_longer))};
 }
 
 void ThreadStrainGatherer::add(const MeasuredParts& parts, std::span<const Vec3> positions) {
-  for (const int k : parts.free_threads) {
-    const double strain = strain_of(parts.garment->springs[k], positions);
-    longer_.add(std::max(strain, 0.0));
-    shorter_.add(std::max(-strain, 0.0));
-  }
-  for (const int k : parts.held_threads)
-    held_longer_.add(std::max(strain_of(parts.garment->springs[k], positions), 0.0));
+  const auto into = [](SpreadGatherer& samples) { return [&](double sample) { samples.add(sample); }; };
+  tell_strains(parts, positions, into(longer_), into(shorter_), into(held_longer_));
 }
 
 LongestThread longest_thread(const MeasuredParts& parts, std::span<const Vec3> positions) {

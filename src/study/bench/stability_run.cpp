@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <fmt/format.h>
+#include <optional>
 
 namespace tutu::app {
 namespace {
@@ -52,7 +53,8 @@ StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup
   cloth::GuardedSolver solver(cloth::make_solver(scene.garment, setup), scene.garment);
   solver.reset(scene.start);
   CrossingCounter counter(scene.garment);
-  GarmentSurface surface(scene.garment);
+  std::optional<GarmentSurface> surface; // its tree is not built for nothing
+  if (looks == SurfaceLooks::every_frame) surface.emplace(scene.garment);
 
   std::vector<Capsule> capsules, capsules_before;
   std::vector<Vec3> pins, pins_before, spin = scene.spin;
@@ -98,10 +100,10 @@ StabilityRun run_stability(const StabilityScene& scene, const RunSettings& setup
       run.failure = fmt::format("diverged in frame {}: {}", frame, cloth::what_was_found(*bad));
     else run.frames = (step + 1) / parts;
     counter.advance(solver.particles().positions, capsules);
-    if (looks == SurfaceLooks::every_frame && (step + 1) % parts == 0) {
-      surface.move(solver.particles().positions);
-      run.limbs.add(frame, surface.with(capsules));
-      run.itself.add(frame, surface.with_itself());
+    if (surface && (step + 1) % parts == 0) {
+      surface->move(solver.particles().positions);
+      run.limbs.add(frame, surface->with(capsules));
+      run.itself.add(frame, surface->with_itself());
       ClothDepths depths;
       probe.measure(capsules, std::nullopt, solver.particles().positions, depths);
       run.deepest = std::max(run.deepest, depths.surface);
