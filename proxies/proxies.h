@@ -21,6 +21,7 @@
 #include "proxies/shapes.h"                // IWYU pragma: export
 
 // The rest.
+#include "proxies/body/body_features.h"         // IWYU pragma: export
 #include "proxies/body/body_mesh.h"             // IWYU pragma: export
 #include "proxies/body/point_triangle.h"        // IWYU pragma: export
 #include "proxies/body/winding.h"               // IWYU pragma: export

@@ -112,6 +112,8 @@ public:
   MeshHits hits(const Capsule& capsule) const;
 
 private:
+  friend class BodyFeatures; // asks the same tree
+
   void require_count(std::size_t vertices) const;
   void refit();
   bool winds_around(const Vec3& point) const;

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace tutu::proxies {
@@ -23,6 +24,7 @@ using Node = fcl::BVNode<fcl::AABBd>;
 
 /// Open ends of a descent: one a level, and FCL halves by the mean, so that a bad mesh can be deep.
 constexpr int k_deepest = 512;
+constexpr double k_anywhere = std::numeric_limits<double>::infinity();
 
 double distance_squared(const fcl::AABBd& box, const Vec3& point) {
   return (box.min_ - point).cwiseMax(point - box.max_).cwiseMax(0.0).squaredNorm();
@@ -46,6 +48,26 @@ fcl::Transform3d pose_of(const Capsule& capsule) {
 }
 
 } // namespace
+
+Asking::Asking(const std::array<Vec3, 3>& corners)
+    : low_(corners[0].cwiseMin(corners[1]).cwiseMin(corners[2])),
+      high_(corners[0].cwiseMax(corners[1]).cwiseMax(corners[2])) {
+  const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+  if (!(area.norm() > detail::k_flat * (high_ - low_).squaredNorm())) return;
+  normal_ = area.normalized();
+  level_ = normal_.dot(corners[0]);
+}
+
+double Asking::least_distance(const Vec3& low, const Vec3& high) const {
+  const double apart = (low - high_).cwiseMax(low_ - high).cwiseMax(0.0).norm();
+  const double middle = 0.5 * normal_.dot(low + high) - level_, half = 0.5 * normal_.cwiseAbs().dot(high - low);
+  return std::max(apart, std::abs(middle) - half);
+}
+
+double Asking::least_height(const Vec3& a, const Vec3& b, const Vec3& c) const {
+  const double at_a = normal_.dot(a) - level_, at_b = normal_.dot(b) - level_, at_c = normal_.dot(c) - level_;
+  return std::max({std::min({at_a, at_b, at_c}), -std::max({at_a, at_b, at_c}), 0.0});
+}
 
 /// BVHModel<AABB>, for the others cannot be refitted quickly: RSS loses points bottom-up, and top-down takes 50 times
 /// as long. FCL has no distance query for it, so the descents below are our own.
@@ -141,6 +163,43 @@ std::optional<MeshPoint> MeshTree::nearest(const Vec3& point, double within, std
   MeshPoint found = nearest_on_triangle(point, positions_[t[0]], positions_[t[1]], positions_[t[2]]);
   found.triangle = best;
   return found;
+}
+
+double MeshTree::around(const Asking& asking, double within, const std::function<void(int)>& visit) const {
+  struct Open {
+    int node;
+    double distance;
+  };
+  std::array<Open, k_deepest + 2> open;
+  const Boxed& model = boxes_->model;
+  const auto opened = [&](int node) {
+    const fcl::AABBd& box = model.getBV(node).bv;
+    return Open{node, asking.least_distance(box.min_, box.max_)};
+  };
+  double rest = k_anywhere; // nothing is nearer of what was not visited
+  bool found = false;
+  int count = 0;
+  open[count++] = opened(0);
+  while (count > 0) {
+    const Open next = open[--count];
+    const Node& node = model.getBV(next.node);
+    // A far box is opened only to learn how far all is, where nothing is near.
+    const bool is_far = next.distance > within;
+    if (is_far && (found || node.isLeaf() || next.distance >= rest)) {
+      rest = std::min(rest, next.distance);
+      continue;
+    }
+    if (node.isLeaf()) {
+      found = true;
+      visit(node.primitiveId());
+      continue;
+    }
+    const Open a = opened(node.leftChild()), b = opened(node.rightChild());
+    const bool left_first = a.distance <= b.distance;
+    open[count++] = left_first ? b : a;
+    open[count++] = left_first ? a : b;
+  }
+  return rest;
 }
 
 double MeshTree::winding_number(const Vec3& point, double beta) const {

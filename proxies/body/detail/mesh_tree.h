@@ -3,12 +3,30 @@
 
 #include "proxies/body/body_mesh.h"
 
+#include <array>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace tutu::proxies {
+
+/// A triangle that asks what is around it, as its box and the plane it lies in.
+class Asking {
+public:
+  explicit Asking(const std::array<Vec3, 3>& corners);
+
+  /// m; no point of a box is nearer to the triangle.
+  double least_distance(const Vec3& low, const Vec3& high) const;
+  /// m; no point of triangle a b c is nearer to the triangle's plane, and so to the triangle. 0 where it has no plane.
+  double least_height(const Vec3& a, const Vec3& b, const Vec3& c) const;
+
+private:
+  Vec3 low_, high_;
+  Vec3 normal_ = Vec3::Zero(); ///< unit; zero where the triangle has no area
+  double level_ = 0.0;         ///< the plane: normal . x = level
+};
 
 class MeshTree {
 public:
@@ -30,6 +48,10 @@ public:
   double winding_number(const Vec3& point, double beta) const;
 
   bool box_holds(const Vec3& point) const; ///< the box of the whole mesh
+
+  /// Calls `visit` with the triangles whose boxes are within `within` (m) of a triangle that asks, in any order. What
+  /// it returns no other triangle of the mesh is nearer than, by boxes and planes; more than `within`.
+  double around(const Asking& asking, double within, const std::function<void(int)>& visit) const;
 
   /// Appends the triangles that a capsule touches, rising.
   void touching(const Capsule& capsule, std::vector<int>& triangles) const;
