@@ -30,11 +30,11 @@ constexpr double k_itself = 1e-6;
 /// A triangle of cloth and what its pairs have in common.
 struct Cloth {
   std::array<Vec3, 3> corners;
-  std::array<Vec3, 3> edges; ///< from corner k to the next
-  std::array<double, 3> squared;
-  Vec3 area;                  ///< edges[0] x edges[1]
-  double area_squared = 0.0;  ///< 0 where it has no plane
-  std::array<Vec3, 3> across; ///< area x edges[k]: grows towards the opposite corner
+  std::array<Vec3, 3> edges;              ///< from corner k to the next
+  std::array<double, 3> squared, lengths; ///< of the edges
+  Vec3 area;                              ///< edges[0] x edges[1]
+  double area_squared = 0.0;              ///< 0 where it has no plane
+  std::array<Vec3, 3> across;             ///< area x edges[k]: grows towards the opposite corner
 };
 
 Cloth cloth_of(const std::array<Vec3, 3>& corners) {
@@ -43,6 +43,7 @@ Cloth cloth_of(const std::array<Vec3, 3>& corners) {
   for (int k = 0; k < 3; ++k) {
     cloth.edges[k] = corners[(k + 1) % 3] - corners[k];
     cloth.squared[k] = cloth.edges[k].squaredNorm();
+    cloth.lengths[k] = std::sqrt(cloth.squared[k]);
   }
   cloth.area = cloth.edges[0].cross(cloth.edges[1]);
   const double longest = *std::ranges::max_element(cloth.squared), squared = cloth.area.squaredNorm();
@@ -135,40 +136,42 @@ double BodyFeatures::contacts(const std::array<Vec3, 3>& corners, const BodyReac
   const Cloth cloth = cloth_of(corners);
   const Asking asking(corners);
   const double farthest = std::max(reach.outside, reach.depth);
-  double clearance = std::numeric_limits<double>::infinity();
+  const double clearance = body_->tree_->clearance(asking, reach.outside, body_->inner_);
+  if (clearance > reach.outside) {
+    // Far off it makes no difference worth the question which side the cloth is on.
+    if (clearance > 2.0 * farthest) return clearance - farthest;
+    // Nothing of it crosses the surface: it is where its first corner is. Outside, it must come to the surface before
+    // anything can have come through it.
+    if (is_outside(corners[0])) return clearance - reach.outside;
+    if (clearance > farthest) return clearance - farthest;
+  }
 
   const auto append = [&](BodyContact contact, int triangle) {
     contact.triangle = triangle;
     if (contact.distance >= 0.0 || comes_through(contact)) contacts.push_back(contact);
   };
-  const auto visit = [&](int triangle) {
+  body_->tree_->around(asking, farthest, [&](int triangle) {
+    if (!table_->is_there(triangle)) return;
     const rig::Triangle& t = body_->triangles_[triangle];
     const std::array<Vec3, 3> body = {body_->positions_[t[0]], body_->positions_[t[1]], body_->positions_[t[2]]};
-    const Vec3 low = body[0].cwiseMin(body[1]).cwiseMin(body[2]), high = body[0].cwiseMax(body[1]).cwiseMax(body[2]);
-    const double least = std::max(asking.least_distance(low, high), asking.least_height(body[0], body[1], body[2]));
-    clearance = std::min(clearance, least);
-    if (least > farthest) return;
+    if (asking.least_height(body[0], body[1], body[2]) > farthest) return;
     for (int c = 0; c < 3; ++c) {
       if (const int vertex = table_->vertex(triangle, c); vertex >= 0 && cloth.area_squared > 0.0) {
         const auto contact = face_vertex(cloth, body, c, table_->vertex_normal(vertex), reach);
         if (contact && table_->vertex_faces(vertex, contact->normal, body_->positions_)) append(*contact, triangle);
       }
       const int edge = table_->edge(triangle, c);
-      if (edge < 0 || table_->edge_normal(edge).isZero(0.0)) continue;
+      if (edge < 0) continue;
+      const Fold& fold = table_->fold(edge);
+      if (fold.pseudonormal.isZero(0.0)) continue;
       for (int k = 0; k < 3; ++k) {
-        if (!(cloth.squared[k] > k_no_length)) continue;
-        const auto contact = edge_edge(cloth, k, body, c, table_->edge_normal(edge), reach);
+        if (!(cloth.squared[k] > k_no_length) || !fold.may_bear(cloth.edges[k], cloth.lengths[k])) continue;
+        const auto contact = edge_edge(cloth, k, body, c, fold.pseudonormal, reach);
         if (contact && table_->edge_faces(edge, contact->normal)) append(*contact, triangle);
       }
     }
-  };
-  clearance = std::min(body_->tree_->around(asking, farthest, visit), clearance);
-
-  if (clearance <= reach.outside) return 0.0;
-  // Nothing of the cloth crosses the surface: it is where its first corner is. Outside, it must come to the surface
-  // before anything can have come through it. Far off it makes no difference that is worth the question.
-  if (clearance > 2.0 * farthest) return clearance - farthest;
-  return is_outside(corners[0]) ? clearance - reach.outside : 0.0;
+  });
+  return 0.0;
 }
 
 /// As the nearest surface has it, and as the whole body has it: open bodies and overlapping shells can tell two tales.

@@ -61,7 +61,7 @@ FeatureTable::FeatureTable(std::span<const rig::Triangle> triangles, const MeshT
     }
     sides_.push_back({use.triangle, use.corner});
   }
-  edge_normals_.resize(sides_begin_.size());
+  folds_.resize(sides_begin_.size());
   sides_begin_.push_back(static_cast<int>(sides_.size()));
   std::ranges::sort(pairs);
   neighbours_begin_.assign(topology.places + 1, 0);
@@ -75,7 +75,7 @@ FeatureTable::FeatureTable(std::span<const rig::Triangle> triangles, const MeshT
 void FeatureTable::pose(std::span<const Vec3> positions) {
   std::ranges::fill(vertex_normals_, Vec3::Zero());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    if (places_[t][0] < 0) continue;
+    if (!is_there(static_cast<int>(t))) continue;
     const Vec3 &a = positions[triangles_[t][0]], &b = positions[triangles_[t][1]], &c = positions[triangles_[t][2]];
     const std::array<Vec3, 3> edges = {b - a, c - b, a - c};
     const Vec3 area = edges[0].cross(edges[1]);
@@ -90,23 +90,29 @@ void FeatureTable::pose(std::span<const Vec3> positions) {
     vertex_normals_[places_[t][1]] += at_b * face_normals_[t];
     vertex_normals_[places_[t][2]] += (M_PI - at_a - at_b) * face_normals_[t];
   }
-  for (std::size_t e = 0; e < edge_normals_.size(); ++e) edge_normals_[e] = edge_normal_now(static_cast<int>(e));
+  for (std::size_t e = 0; e < folds_.size(); ++e) folds_[e] = fold_now(static_cast<int>(e));
 }
 
 Vec3 FeatureTable::into(const Side& side) const {
   return face_normals_[side.triangle].cross(directions_[side.triangle][side.corner]);
 }
 
-Vec3 FeatureTable::edge_normal_now(int edge) const {
+Fold FeatureTable::fold_now(int edge) const {
   const std::span<const Side> all = sides(edge);
-  Vec3 sum = Vec3::Zero();
+  Fold fold;
   for (const Side& side : all) {
     const Vec3& normal = face_normals_[side.triangle];
-    if (normal.isZero(0.0) || directions_[side.triangle][side.corner].isZero(0.0)) return Vec3::Zero();
-    sum += normal;
+    if (normal.isZero(0.0) || directions_[side.triangle][side.corner].isZero(0.0)) return {};
+    fold.pseudonormal += normal;
   }
-  if (all.size() == 2 && face_normals_[all[0].triangle].dot(into(all[1])) > k_flat_fold) return Vec3::Zero();
-  return sum.norm() > k_no_normal ? sum : Vec3(Vec3::Zero());
+  if (!(fold.pseudonormal.norm() > k_no_normal)) return {};
+  if (all.size() != 2) return fold;
+  fold.first = face_normals_[all[0].triangle];
+  if (fold.first.dot(into(all[1])) > k_flat_fold) return {};
+  fold.second = face_normals_[all[1].triangle];
+  const auto start = [&](const Side& side) { return places_[side.triangle][side.corner]; };
+  if (start(all[0]) == start(all[1])) fold.second = -fold.second;
+  return fold;
 }
 
 bool FeatureTable::vertex_faces(int vertex, const Vec3& direction, std::span<const Vec3> positions) const {

@@ -15,6 +15,24 @@ namespace tutu::proxies {
 /// or on a tangent plane meets its features in spite of rounding and of what one step turns.
 inline constexpr double k_cone_slack = 0.05;
 
+/// An edge and the two triangles that it joins.
+struct Fold {
+  /// Sum of the normals of its triangles, not unit: one for an open edge. Zero where cloth cannot rest on the edge: it
+  /// is concave, it has no length, a triangle of it has no area, or they face each other.
+  Vec3 pseudonormal = Vec3::Zero();
+  /// Normals, unit, of the triangle that the edge is told by and of the other; that one's turned where both run along
+  /// the edge the same way. Zero where there are not two.
+  Vec3 first = Vec3::Zero(), second = Vec3::Zero();
+
+  /// False where no direction perpendicular to this edge and to `other` is in the normal cone, which leaves out most:
+  /// the cone holds one where `other` rises above one triangle and sinks below the other, an arc crossing an arc on the
+  /// Gauss map.
+  bool may_bear(const Vec3& other, double length) const {
+    const double a = other.dot(first), b = other.dot(second), slack = k_cone_slack * length;
+    return (a <= slack && -b <= slack) || (-a <= slack && b <= slack);
+  }
+};
+
 /// Made once from a mesh, posed as often as it moves. Each vertex (place of MeshTopology) and each edge belongs to one
 /// of its triangles, which its box holds: a search of boxes that meets every near triangle meets every near feature
 /// once.
@@ -27,15 +45,14 @@ public:
   /// The vertices are there now.
   void pose(std::span<const Vec3> positions);
 
+  bool is_there(int triangle) const { return places_[triangle][0] >= 0; }
   // What a triangle owns; -1 where it does not.
   int vertex(int triangle, int corner) const { return vertices_[triangle][corner]; }
   int edge(int triangle, int corner) const { return edges_[triangle][corner]; } ///< from the corner to the next
 
   /// The angle-weighted pseudonormal [Baerentzen and Aanaes 2005], not unit; zero where there is none.
   const Vec3& vertex_normal(int vertex) const { return vertex_normals_[vertex]; }
-  /// Sum of the normals of its triangles, not unit: one for an open edge. Zero where cloth cannot rest on the edge: it
-  /// is concave, it has no length, a triangle of it has no area, or they face each other.
-  const Vec3& edge_normal(int edge) const { return edge_normals_[edge]; }
+  const Fold& fold(int edge) const { return folds_[edge]; }
 
   // Whether a unit `direction` is in the normal cone: no nearer way than it leads from the feature's Voronoi region to
   // the surface. For edges it must be perpendicular to the edge.
@@ -51,7 +68,7 @@ private:
     return {sides_.data() + sides_begin_[edge], static_cast<std::size_t>(sides_begin_[edge + 1] - sides_begin_[edge])};
   }
   Vec3 into(const Side& side) const; ///< unit, in the triangle, perpendicular to the edge
-  Vec3 edge_normal_now(int edge) const;
+  Fold fold_now(int edge) const;
 
   std::span<const rig::Triangle> triangles_;
   std::vector<std::array<int, 3>> vertices_, edges_; ///< by triangle
@@ -63,7 +80,8 @@ private:
 
   std::vector<std::array<Vec3, 3>> directions_; ///< by triangle: of its edges, unit; zero where one has no length
   std::vector<Vec3> face_normals_;              ///< unit; zero where the triangle has no area
-  std::vector<Vec3> vertex_normals_, edge_normals_;
+  std::vector<Vec3> vertex_normals_;
+  std::vector<Fold> folds_;
 };
 
 } // namespace tutu::proxies

@@ -58,12 +58,6 @@ Asking::Asking(const std::array<Vec3, 3>& corners)
   level_ = normal_.dot(corners[0]);
 }
 
-double Asking::least_distance(const Vec3& low, const Vec3& high) const {
-  const double apart = (low - high_).cwiseMax(low_ - high).cwiseMax(0.0).norm();
-  const double middle = 0.5 * normal_.dot(low + high) - level_, half = 0.5 * normal_.cwiseAbs().dot(high - low);
-  return std::max(apart, std::abs(middle) - half);
-}
-
 double Asking::least_height(const Vec3& a, const Vec3& b, const Vec3& c) const {
   const double at_a = normal_.dot(a) - level_, at_b = normal_.dot(b) - level_, at_c = normal_.dot(c) - level_;
   return std::max({std::min({at_a, at_b, at_c}), -std::max({at_a, at_b, at_c}), 0.0});
@@ -165,7 +159,7 @@ std::optional<MeshPoint> MeshTree::nearest(const Vec3& point, double within, std
   return found;
 }
 
-double MeshTree::around(const Asking& asking, double within, const std::function<void(int)>& visit) const {
+double MeshTree::clearance(const Asking& asking, double enough, std::span<const std::uint8_t> skip) const {
   struct Open {
     int node;
     double distance;
@@ -176,30 +170,44 @@ double MeshTree::around(const Asking& asking, double within, const std::function
     const fcl::AABBd& box = model.getBV(node).bv;
     return Open{node, asking.least_distance(box.min_, box.max_)};
   };
-  double rest = k_anywhere; // nothing is nearer of what was not visited
-  bool found = false;
+  double least = k_anywhere;
   int count = 0;
   open[count++] = opened(0);
   while (count > 0) {
     const Open next = open[--count];
+    if (next.distance >= least) continue;
     const Node& node = model.getBV(next.node);
-    // A far box is opened only to learn how far all is, where nothing is near.
-    const bool is_far = next.distance > within;
-    if (is_far && (found || node.isLeaf() || next.distance >= rest)) {
-      rest = std::min(rest, next.distance);
+    if (!node.isLeaf()) {
+      const Open a = opened(node.leftChild()), b = opened(node.rightChild());
+      const bool left_first = a.distance <= b.distance;
+      open[count++] = left_first ? b : a;
+      open[count++] = left_first ? a : b;
       continue;
     }
+    if (!skip.empty() && skip[node.primitiveId()]) continue;
+    const rig::Triangle& t = triangles_[node.primitiveId()];
+    const double height = asking.least_height(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+    least = std::min(least, std::max(next.distance, height));
+    if (least <= enough) return 0.0;
+  }
+  return least;
+}
+
+void MeshTree::around(const Asking& asking, double within, const std::function<void(int)>& visit) const {
+  std::array<int, k_deepest + 2> open;
+  const Boxed& model = boxes_->model;
+  int count = 0;
+  open[count++] = 0;
+  while (count > 0) {
+    const Node& node = model.getBV(open[--count]);
+    if (asking.least_distance(node.bv.min_, node.bv.max_) > within) continue;
     if (node.isLeaf()) {
-      found = true;
       visit(node.primitiveId());
       continue;
     }
-    const Open a = opened(node.leftChild()), b = opened(node.rightChild());
-    const bool left_first = a.distance <= b.distance;
-    open[count++] = left_first ? b : a;
-    open[count++] = left_first ? a : b;
+    open[count++] = node.leftChild();
+    open[count++] = node.rightChild();
   }
-  return rest;
 }
 
 double MeshTree::winding_number(const Vec3& point, double beta) const {

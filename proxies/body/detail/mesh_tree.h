@@ -4,6 +4,7 @@
 #include "proxies/body/body_mesh.h"
 
 #include <array>
+#include <cmath>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -18,7 +19,12 @@ public:
   explicit Asking(const std::array<Vec3, 3>& corners);
 
   /// m; no point of a box is nearer to the triangle.
-  double least_distance(const Vec3& low, const Vec3& high) const;
+  double least_distance(const Vec3& low, const Vec3& high) const {
+    const double apart = (low - high_).cwiseMax(low_ - high).cwiseMax(0.0).squaredNorm();
+    const double middle = 0.5 * normal_.dot(low + high) - level_, half = 0.5 * normal_.cwiseAbs().dot(high - low);
+    const double above = std::abs(middle) - half;
+    return above > 0.0 && above * above > apart ? above : std::sqrt(apart);
+  }
   /// m; no point of triangle a b c is nearer to the triangle's plane, and so to the triangle. 0 where it has no plane.
   double least_height(const Vec3& a, const Vec3& b, const Vec3& c) const;
 
@@ -49,9 +55,12 @@ public:
 
   bool box_holds(const Vec3& point) const; ///< the box of the whole mesh
 
-  /// Calls `visit` with the triangles whose boxes are within `within` (m) of a triangle that asks, in any order. What
-  /// it returns no other triangle of the mesh is nearer than, by boxes and planes; more than `within`.
-  double around(const Asking& asking, double within, const std::function<void(int)>& visit) const;
+  /// m; no triangle of the mesh is nearer to a triangle that asks, by boxes and planes. 0 where one may be within
+  /// `enough`. Triangles with skip[triangle] are not there; an empty span leaves out none.
+  double clearance(const Asking& asking, double enough, std::span<const std::uint8_t> skip) const;
+
+  /// Calls `visit` with the triangles whose boxes are within `within` (m) of a triangle that asks, in any order.
+  void around(const Asking& asking, double within, const std::function<void(int)>& visit) const;
 
   /// Appends the triangles that a capsule touches, rising.
   void touching(const Capsule& capsule, std::vector<int>& triangles) const;
