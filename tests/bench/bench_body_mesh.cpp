@@ -1,4 +1,5 @@
 // The true body, 25,000 vertices: what a frame of questions costs, the refit included, and each part alone.
+#include "proxies/body/body_features.h"
 #include "proxies/body/body_mesh.h"
 #include "tests/support/solids.h"
 
@@ -103,6 +104,39 @@ void hits_of_a_capsule(benchmark::State& state) {
   state.SetLabel(std::to_string(touched) + " triangles");
 }
 
+/// Triangles of cloth, some mm a side, 1 mm off the body, row after row.
+void features_of_a_triangle(benchmark::State& state) {
+  const test::Surface surface = one_shell();
+  const BodyMesh body(surface.positions, surface.triangles);
+  const BodyFeatures features(body);
+  const double side = 1e-3 * static_cast<double>(state.range(0)), depth = 1e-3 * static_cast<double>(state.range(1));
+  std::vector<std::array<Vec3, 3>> cloth;
+  for (int i = 0; i < 4096; ++i) {
+    const double u = 2.0 * M_PI * (i / 64) / 64, v = 2.0 * M_PI * (i % 64) / 64;
+    const Vec3 out(std::cos(v) * std::cos(u), std::sin(v), std::cos(v) * std::sin(u));
+    const Vec3 middle = 0.5 * Vec3(std::cos(u), 0.0, std::sin(u)) + 0.131 * out;
+    const Vec3 x = out.unitOrthogonal(), y = out.cross(x);
+    cloth.push_back({middle + side * x, middle + side * (0.87 * y - 0.5 * x), middle - side * (0.87 * y + 0.5 * x)});
+    for (Vec3& corner : cloth.back()) corner = middle + (corner - middle) / std::sqrt(3.0);
+  }
+  std::vector<BodyContact> contacts;
+  std::size_t i = 0, found = 0;
+  for (auto _ : state) {
+    contacts.clear();
+    benchmark::DoNotOptimize(features.contacts(cloth[i++ % cloth.size()], {0.003, depth}, contacts));
+    found += contacts.size();
+  }
+  state.counters["contacts"] = static_cast<double>(found) / static_cast<double>(i);
+}
+void refresh_of_features(benchmark::State& state) {
+  const test::Surface surface = one_shell();
+  const BodyMesh body(surface.positions, surface.triangles);
+  BodyFeatures features(body);
+  for (auto _ : state) features.refresh();
+}
+
+BENCHMARK(features_of_a_triangle)->ArgsProduct({{10, 30, 80}, {5, 20}})->Unit(benchmark::kMicrosecond);
+BENCHMARK(refresh_of_features)->Unit(benchmark::kMillisecond);
 BENCHMARK(signed_by_pseudonormal)->Arg(900)->Arg(4096)->Arg(16384)->Unit(benchmark::kMillisecond);
 BENCHMARK(signed_by_winding_number)->Arg(900)->Arg(4096)->Arg(16384)->Unit(benchmark::kMillisecond);
 BENCHMARK(nearest_anywhere)->Arg(900)->Arg(4096)->Arg(16384)->Unit(benchmark::kMillisecond);
