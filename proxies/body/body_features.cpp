@@ -134,9 +134,9 @@ double BodyFeatures::contacts(const std::array<Vec3, 3>& corners, const BodyReac
   for (const Vec3& corner : corners) proxies::require_usable(corner);
   require_usable(reach);
   const Cloth cloth = cloth_of(corners);
-  const Asking asking(corners);
+  const TriangleProbe probe(corners);
   const double farthest = std::max(reach.outside, reach.depth);
-  const double clearance = body_->tree_->clearance(asking, reach.outside, body_->inner_);
+  const double clearance = body_->tree_->clearance(probe, reach.outside, body_->inner_);
   if (clearance > reach.outside) {
     // Far off it makes no difference worth the question which side the cloth is on.
     if (clearance > 2.0 * farthest) return clearance - farthest;
@@ -150,11 +150,11 @@ double BodyFeatures::contacts(const std::array<Vec3, 3>& corners, const BodyReac
     contact.triangle = triangle;
     if (contact.distance >= 0.0 || comes_through(contact)) contacts.push_back(contact);
   };
-  body_->tree_->around(asking, farthest, [&](int triangle) {
+  body_->tree_->around(probe, farthest, [&](int triangle) {
     if (!table_->is_there(triangle)) return;
     const rig::Triangle& t = body_->triangles_[triangle];
     const std::array<Vec3, 3> body = {body_->positions_[t[0]], body_->positions_[t[1]], body_->positions_[t[2]]};
-    if (asking.least_height(body[0], body[1], body[2]) > farthest) return;
+    if (probe.least_height(body[0], body[1], body[2]) > farthest) return;
     for (int c = 0; c < 3; ++c) {
       if (const int vertex = table_->vertex(triangle, c); vertex >= 0 && cloth.area_squared > 0.0) {
         const auto contact = face_vertex(cloth, body, c, table_->vertex_normal(vertex), reach);
@@ -178,7 +178,7 @@ double BodyFeatures::contacts(const std::array<Vec3, 3>& corners, const BodyReac
 bool BodyFeatures::is_outside(const Vec3& point) const {
   const auto on = body_->tree_->nearest(point, std::numeric_limits<double>::infinity(), body_->inner_);
   if (!on || body_->pseudonormal(*on).dot(point - on->closest) < 0.0) return false;
-  return !body_->is_inside(point);
+  return body_->census_.rule == SideRule::pseudonormal || !body_->is_inside(point);
 }
 
 bool BodyFeatures::comes_through(const BodyContact& contact) const {

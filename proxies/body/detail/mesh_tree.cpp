@@ -24,6 +24,9 @@ using Node = fcl::BVNode<fcl::AABBd>;
 
 /// Open ends of a descent: one a level, and FCL halves by the mean, so that a bad mesh can be deep.
 constexpr int k_deepest = 512;
+/// A probe has no plane when its area is below this share of its size squared: rounding would then lift its own corners
+/// off the plane by more than 1e-10 of its size.
+constexpr double k_no_plane = 1e-6;
 constexpr double k_anywhere = std::numeric_limits<double>::infinity();
 
 double distance_squared(const fcl::AABBd& box, const Vec3& point) {
@@ -49,16 +52,16 @@ fcl::Transform3d pose_of(const Capsule& capsule) {
 
 } // namespace
 
-Asking::Asking(const std::array<Vec3, 3>& corners)
+TriangleProbe::TriangleProbe(const std::array<Vec3, 3>& corners)
     : low_(corners[0].cwiseMin(corners[1]).cwiseMin(corners[2])),
       high_(corners[0].cwiseMax(corners[1]).cwiseMax(corners[2])) {
   const Vec3 area = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-  if (!(area.norm() > detail::k_flat * (high_ - low_).squaredNorm())) return;
+  if (!(area.norm() > k_no_plane * (high_ - low_).squaredNorm())) return;
   normal_ = area.normalized();
   level_ = normal_.dot(corners[0]);
 }
 
-double Asking::least_height(const Vec3& a, const Vec3& b, const Vec3& c) const {
+double TriangleProbe::least_height(const Vec3& a, const Vec3& b, const Vec3& c) const {
   const double at_a = normal_.dot(a) - level_, at_b = normal_.dot(b) - level_, at_c = normal_.dot(c) - level_;
   return std::max({std::min({at_a, at_b, at_c}), -std::max({at_a, at_b, at_c}), 0.0});
 }
@@ -159,7 +162,7 @@ std::optional<MeshPoint> MeshTree::nearest(const Vec3& point, double within, std
   return found;
 }
 
-double MeshTree::clearance(const Asking& asking, double enough, std::span<const std::uint8_t> skip) const {
+double MeshTree::clearance(const TriangleProbe& probe, double enough, std::span<const std::uint8_t> skip) const {
   struct Open {
     int node;
     double distance;
@@ -168,7 +171,7 @@ double MeshTree::clearance(const Asking& asking, double enough, std::span<const 
   const Boxed& model = boxes_->model;
   const auto opened = [&](int node) {
     const fcl::AABBd& box = model.getBV(node).bv;
-    return Open{node, asking.least_distance(box.min_, box.max_)};
+    return Open{node, probe.least_distance(box.min_, box.max_)};
   };
   double least = k_anywhere;
   int count = 0;
@@ -186,21 +189,21 @@ double MeshTree::clearance(const Asking& asking, double enough, std::span<const 
     }
     if (!skip.empty() && skip[node.primitiveId()]) continue;
     const rig::Triangle& t = triangles_[node.primitiveId()];
-    const double height = asking.least_height(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+    const double height = probe.least_height(positions_[t[0]], positions_[t[1]], positions_[t[2]]);
     least = std::min(least, std::max(next.distance, height));
     if (least <= enough) return 0.0;
   }
   return least;
 }
 
-void MeshTree::around(const Asking& asking, double within, const std::function<void(int)>& visit) const {
+void MeshTree::around(const TriangleProbe& probe, double within, const std::function<void(int)>& visit) const {
   std::array<int, k_deepest + 2> open;
   const Boxed& model = boxes_->model;
   int count = 0;
   open[count++] = 0;
   while (count > 0) {
     const Node& node = model.getBV(open[--count]);
-    if (asking.least_distance(node.bv.min_, node.bv.max_) > within) continue;
+    if (probe.least_distance(node.bv.min_, node.bv.max_) > within) continue;
     if (node.isLeaf()) {
       visit(node.primitiveId());
       continue;

@@ -13,10 +13,10 @@
 
 namespace tutu::proxies {
 
-/// A triangle that asks what is around it, as its box and the plane it lies in.
-class Asking {
+/// A triangle that asks what is around it (world, m), as its box and the plane it lies in. Bounds from below alone.
+class TriangleProbe {
 public:
-  explicit Asking(const std::array<Vec3, 3>& corners);
+  explicit TriangleProbe(const std::array<Vec3, 3>& corners);
 
   /// m; no point of a box is nearer to the triangle.
   double least_distance(const Vec3& low, const Vec3& high) const {
@@ -55,12 +55,12 @@ public:
 
   bool box_holds(const Vec3& point) const; ///< the box of the whole mesh
 
-  /// m; no triangle of the mesh is nearer to a triangle that asks, by boxes and planes. 0 where one may be within
+  /// m; no triangle of the mesh is nearer to the probe, by boxes and planes. 0 where one may be within
   /// `enough`. Triangles with skip[triangle] are not there; an empty span leaves out none.
-  double clearance(const Asking& asking, double enough, std::span<const std::uint8_t> skip) const;
+  double clearance(const TriangleProbe& probe, double enough, std::span<const std::uint8_t> skip) const;
 
-  /// Calls `visit` with the triangles whose boxes are within `within` (m) of a triangle that asks, in any order.
-  void around(const Asking& asking, double within, const std::function<void(int)>& visit) const;
+  /// Calls `visit` with the triangles whose boxes are within `within` (m) of the probe, in any order.
+  void around(const TriangleProbe& probe, double within, const std::function<void(int)>& visit) const;
 
   /// Appends the triangles that a capsule touches, rising.
   void touching(const Capsule& capsule, std::vector<int>& triangles) const;

@@ -1,6 +1,9 @@
 // What a triangle of cloth meets of the body, against every vertex and edge asked by other formulas.
 #include "proxies/body/body_features.h"
+#include "rig/character.h"
+#include "rig/import/import.h"
 #include "tests/support/brute_features.h"
+#include "tests/support/paths.h"
 #include "tests/support/shaped_bodies.h"
 
 #include <gtest/gtest.h>
@@ -233,6 +236,26 @@ TEST(BodyFeatures, FarSideOfAThinLimbIsNotMet) {
     }
   }
   EXPECT_GT(met, 400);
+}
+
+TEST(BodyFeatures, OfTheDancerComeThroughClothThatIsInsideHer) {
+  const rig::Mesh mesh = rig::import_character(source_file("assets/characters/dancer.dae")).character.mesh;
+  const BodyMesh body(mesh.positions, mesh.triangles);
+  const BodyFeatures features(body);
+  const ShapedBody dancer{"dancer", {mesh.positions, mesh.triangles}, {}};
+  std::mt19937_64 random(12);
+  std::uniform_real_distribution<double> height(-0.015, 0.01);
+  int through = 0;
+  for (int i = 0; i < 400; ++i) {
+    const std::array<Vec3, 3> cloth = cloth_near(random, dancer, height(random), 0.03);
+    for (const BodyContact& contact : contacts_of(features, cloth, k_reach)) {
+      expect_convention(contact, body, cloth, k_reach);
+      if (contact.distance > -1e-6) continue;
+      EXPECT_TRUE(body.is_inside(cloth_point(contact, cloth))) << i << ", distance " << contact.distance;
+      ++through;
+    }
+  }
+  EXPECT_GT(through, 400);
 }
 
 TEST(BodyFeatures, WhatIsDeeperIsNoContact) {
