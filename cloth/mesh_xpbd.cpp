@@ -3,6 +3,7 @@
 #include "cloth/detail/colouring.h"
 #include "cloth/detail/solver_parts.h"
 #include "cloth/garment/dihedral.h"
+#include "cloth/state/tolerances.h"
 
 #include <cmath>
 
@@ -11,7 +12,8 @@ namespace tutu::cloth {
 template <class Scalar>
 MeshXpbd<Scalar>::MeshXpbd(const Garment& garment)
     : garment_(&garment), pinned_(pinned_flags(garment)), x_(garment.rest_positions.size()),
-      predicted_(garment.rest_positions.size()), contacts_(garment.fabric.contact_offset()) {
+      was_(garment.rest_positions.size()), predicted_(garment.rest_positions.size()),
+      contacts_(garment.fabric.contact_offset()) {
   for (int i = 0; i < garment.particle_count(); ++i)
     inverse_masses_.push_back(pinned_[i] ? Scalar(0) : static_cast<Scalar>(1.0 / garment.masses[i]));
   add_stretches();
@@ -79,7 +81,11 @@ template <class Scalar> void MeshXpbd<Scalar>::solve(Stretch& stretch, Scalar pe
   const Scalar compliance = stretch.compliance * per_h2;
   const Scalar step = (stretch.rest_length - length - compliance * stretch.multiplier) / (wi + wj + compliance);
   stretch.multiplier += step;
-  const Vector pull = (step / length) * d;
+  const Vector was = was_[stretch.j] - was_[stretch.i];
+  const Scalar share = step / length;
+  const bool as_it_was = std::abs(d.dot(d - was)) <= static_cast<Scalar>(k_most_turn) * length * length &&
+                         std::abs(stretch.multiplier) * (wi + wj) <= static_cast<Scalar>(k_most_pull) * length;
+  const Vector pull = share * (as_it_was ? was : d);
   x_[stretch.i] -= wi * pull;
   x_[stretch.j] += wj * pull;
 }
@@ -107,7 +113,10 @@ template <class Scalar> void MeshXpbd<Scalar>::solve_constraints(double h, bool 
   // From the garment itself rather than from the world's origin: floats are finest near 0. What comes back is the
   // constraints' displacement, so that rounding touches nothing else.
   const Vec3 origin = particles_.positions.front();
-  for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = (particles_.positions[i] - origin).template cast<Scalar>();
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    x_[i] = (particles_.positions[i] - origin).template cast<Scalar>();
+    was_[i] = (before_[i] - origin).template cast<Scalar>();
+  }
   predicted_ = x_;
 
   const auto per_h2 = static_cast<Scalar>(1.0 / (h * h));

@@ -19,7 +19,8 @@ namespace tutu::cloth {
 ///   v = (x - x_old) / h.
 /// Constraints, each with dlambda = (-C - a/h^2 lambda) / (sum w |grad C|^2 + a/h^2) [Macklin et al. 2016, XPBD, eq.
 /// 18]:
-///   stretch  C = |x_j - x_i| - L, a = 1/K, for structural and shear springs
+///   stretch  C = |x_j - x_i| - L, a = 1/K, for structural and shear springs, pulling along the edge as it was at the
+///            substep's start (cloth/damping.h)
 ///   bend     C = angle - rest angle, a = 1/k (garment_elements.h); bend springs do not count
 ///   tethers  C = |x - anchor| - length <= 0, rigid, after the others.
 /// They are solved colour by colour (no two of a colour share a particle): stretch up the order of colours, bend,
@@ -81,7 +82,8 @@ private:
   std::vector<Stretch> stretches_;     ///< colour by colour
   std::vector<Hinge> hinges_;          ///< colour by colour
   std::vector<TetherLimit> tethers_;
-  std::vector<Vector> x_, predicted_; ///< from a particle of the garment: being solved, and before
+  std::vector<Vector> x_, was_, predicted_; ///< from a particle of the garment: being solved, at the substep's start,
+                                            ///< and before the constraints
   ContactSearch contacts_;
   SolverTimes times_;
 };
