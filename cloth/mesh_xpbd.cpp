@@ -10,10 +10,10 @@
 namespace tutu::cloth {
 
 template <class Scalar>
-MeshXpbd<Scalar>::MeshXpbd(const Garment& garment)
+MeshXpbd<Scalar>::MeshXpbd(const Garment& garment, const SolverOptions& options)
     : garment_(&garment), pinned_(pinned_flags(garment)), x_(garment.rest_positions.size()),
       was_(garment.rest_positions.size()), predicted_(garment.rest_positions.size()),
-      contacts_(garment.fabric.contact_offset()) {
+      contacts_(garment.fabric.contact_offset(), options.swept), triangle_contacts_(garment, options) {
   for (int i = 0; i < garment.particle_count(); ++i)
     inverse_masses_.push_back(pinned_[i] ? Scalar(0) : static_cast<Scalar>(1.0 / garment.masses[i]));
   add_stretches();
@@ -153,10 +153,14 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
   if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
   contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
+  triangle_contacts_.begin_frame(query, contacts_, particles_);
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto rub = [&](int i, int collider, const proxies::Contact& contact, double push) {
     contacts_.push_out(particles_.positions[i], before_[i], collider, contact, push, input.friction);
+  };
+  const auto rub_triangle = [&](const TriangleContact& contact) {
+    push_out(contact, contacts_, before_, input.friction, particles_.positions);
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};
@@ -168,9 +172,14 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
     time = lap(time, times_.cloth);
     if (!is_in_world(particles_)) return find_trouble(now, {});
     contacts_.for_each_contact(query, s, pinned_, particles_, rub);
+    triangle_contacts_.for_each_contact(query, contacts_, particles_, rub_triangle);
     time = lap(time, times_.contact);
-    for (int i = 0; i < particles_.count(); ++i)
-      if (!pinned_[i]) particles_.velocities[i] = (particles_.positions[i] - before_[i]) / h;
+    for (int i = 0; i < particles_.count(); ++i) {
+      if (pinned_[i]) continue;
+      Vec3& v = particles_.velocities[i];
+      v = (particles_.positions[i] - before_[i]) / h;
+      if (const double speed = v.norm(); speed > k_fastest_particle) v *= k_fastest_particle / speed;
+    }
     const bool broken = is_broken();
     time = lap(time, times_.cloth);
     if (broken) return find_trouble(now, {});

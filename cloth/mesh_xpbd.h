@@ -1,7 +1,7 @@
 // Extended position-based dynamics in small steps for cloth of any triangles.
 #pragma once
 
-#include "cloth/contact/contact_search.h"
+#include "cloth/contact/triangle_contacts.h"
 #include "cloth/garment/elements.h"
 #include "cloth/solver.h"
 
@@ -38,14 +38,14 @@ namespace tutu::cloth {
 /// most friction * push (Coulomb, on positions).
 template <class Scalar> class MeshXpbd final : public Solver {
 public:
-  explicit MeshXpbd(const Garment& garment);
+  explicit MeshXpbd(const Garment& garment, const SolverOptions& options = {});
 
   void reset(std::span<const Vec3> positions) override;
   void restore(const Particles& state) override;
   std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
-  const ContactCounts& contact_counts() const override { return contacts_.counts(); }
+  ContactCounts contact_counts() const override { return contacts_.counts() + triangle_contacts_.counts(); }
   BroadPhaseView broad_phase() const override { return contacts_.broad_phase(); }
 
 private:
@@ -85,6 +85,7 @@ private:
   std::vector<Vector> x_, was_, predicted_; ///< from a particle of the garment: being solved, at the substep's start,
                                             ///< and before the constraints
   ContactSearch contacts_;
+  TriangleContacts triangle_contacts_;
   SolverTimes times_;
 };
 
