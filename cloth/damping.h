@@ -23,9 +23,13 @@ struct DampedStep {
 /// t damp like themselves: up to 2 a vibration of any stiffness decays, but what is stiffer than the step then rings,
 /// and cloth that a fast limb strikes opens (with 1.25, one at 20 m/s passed in 3 substeps a frame).
 ///
-/// What stays of the step: its pulls have the direction that it ends with, which takes h w^2 / 2 from a swing w of a
-/// fold or of the whole garment too, and spin from what turns. xpbd of any mesh does not use this: its passes do not
-/// come to an end, and what they leave grows where a substep is to take back less; it damps like h.
+/// Turning is no strain, and not damped: edges pull in the direction that they had at the substep's start, as in SHAKE
+/// [Ryckaert, Ciccotti, Berendsen 1977], of which a velocity of (x - was) / h makes a leapfrog, the same backwards in
+/// time. The direction that they end with would take h w^2 / 2 from a swing w of a fold or of the whole garment, and
+/// spin from what turns. It is the one for what the substep steps over (k_most_turn, k_most_pull).
+///
+/// xpbd of any mesh uses neither: its passes do not come to an end, and what they leave grows where a substep is to
+/// take back less; it damps like h.
 class Damping {
 public:
   explicit Damping(const Garment& garment);

@@ -7,8 +7,9 @@
 
 namespace tutu::cloth {
 
-MassSpring::MassSpring(const Garment& garment)
-    : garment_(&garment), pinned_(pinned_flags(garment)), contacts_(garment.fabric.contact_offset()) {
+MassSpring::MassSpring(const Garment& garment, const SolverOptions& options)
+    : garment_(&garment), pinned_(pinned_flags(garment)), contacts_(garment.fabric.contact_offset(), options.swept),
+      triangle_contacts_(garment, options) {
   reset(garment.rest_positions);
 }
 
@@ -44,12 +45,18 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
   if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
   contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
+  triangle_contacts_.begin_frame(query, contacts_, particles_);
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto stop_at_surface = [this](int i, int, const proxies::Contact& contact, double push) {
     particles_.positions[i] += push * contact.normal;
     Vec3& v = particles_.velocities[i];
     v -= v.dot(contact.normal) * contact.normal;
+  };
+  const auto stop_triangle = [this](const TriangleContact& contact) {
+    const Vec3& n = contact.contact.normal;
+    contact.move(particles_.positions, contact.push * n);
+    contact.move(particles_.velocities, -contact.point(particles_.velocities).dot(n) * n);
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};
@@ -64,6 +71,7 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
       return find_trouble({*garment_, pinned_, substep, h, particles_, starts}, {});
     }
     contacts_.for_each_contact(query, s, pinned_, particles_, stop_at_surface);
+    triangle_contacts_.for_each_contact(query, contacts_, particles_, stop_triangle);
     time = lap(time, times_.contact);
     close_seams(*garment_, pinned_, particles_);
     const bool whole = renew_forces();

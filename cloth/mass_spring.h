@@ -1,7 +1,7 @@
 // The report's cloth: masses, springs, drag, gravity, semi-implicit Euler, then projection out of the colliders.
 #pragma once
 
-#include "cloth/contact/contact_search.h"
+#include "cloth/contact/triangle_contacts.h"
 #include "cloth/solver.h"
 
 #include <cstdint>
@@ -14,18 +14,18 @@ namespace tutu::cloth {
 /// A substep h, with forces at the positions it starts from:
 ///   v less what the air takes (cloth/air/air.h, where the fabric has it),
 ///   v += h (F/m + g - drag v),  x += h v,  pins to their targets, collisions, seams, then forces and the check.
-/// A collision puts the particle on the surface and cancels its normal velocity, v -= (v . n) n, without friction
-/// [INF585 report 2021, collisions].
+/// A collision puts the particle, or the point of a triangle, on the surface and cancels its normal velocity,
+/// v -= (v . n) n, without friction [INF585 report 2021, collisions].
 class MassSpring final : public Solver {
 public:
-  explicit MassSpring(const Garment& garment);
+  explicit MassSpring(const Garment& garment, const SolverOptions& options = {});
 
   void reset(std::span<const Vec3> positions) override;
   void restore(const Particles& state) override;
   std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
-  const ContactCounts& contact_counts() const override { return contacts_.counts(); }
+  ContactCounts contact_counts() const override { return contacts_.counts() + triangle_contacts_.counts(); }
   BroadPhaseView broad_phase() const override { return contacts_.broad_phase(); }
 
 private:
@@ -37,6 +37,7 @@ private:
   std::vector<Vec3> forces_; ///< N, of the springs at the present positions
   std::vector<std::uint8_t> pinned_;
   ContactSearch contacts_;
+  TriangleContacts triangle_contacts_;
   SolverTimes times_;
 };
 

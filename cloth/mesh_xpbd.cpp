@@ -3,15 +3,17 @@
 #include "cloth/detail/colouring.h"
 #include "cloth/detail/solver_parts.h"
 #include "cloth/garment/dihedral.h"
+#include "cloth/state/tolerances.h"
 
 #include <cmath>
 
 namespace tutu::cloth {
 
 template <class Scalar>
-MeshXpbd<Scalar>::MeshXpbd(const Garment& garment)
+MeshXpbd<Scalar>::MeshXpbd(const Garment& garment, const SolverOptions& options)
     : garment_(&garment), pinned_(pinned_flags(garment)), x_(garment.rest_positions.size()),
-      predicted_(garment.rest_positions.size()), contacts_(garment.fabric.contact_offset()) {
+      was_(garment.rest_positions.size()), predicted_(garment.rest_positions.size()),
+      contacts_(garment.fabric.contact_offset(), options.swept), triangle_contacts_(garment, options) {
   for (int i = 0; i < garment.particle_count(); ++i)
     inverse_masses_.push_back(pinned_[i] ? Scalar(0) : static_cast<Scalar>(1.0 / garment.masses[i]));
   add_stretches();
@@ -79,7 +81,11 @@ template <class Scalar> void MeshXpbd<Scalar>::solve(Stretch& stretch, Scalar pe
   const Scalar compliance = stretch.compliance * per_h2;
   const Scalar step = (stretch.rest_length - length - compliance * stretch.multiplier) / (wi + wj + compliance);
   stretch.multiplier += step;
-  const Vector pull = (step / length) * d;
+  const Vector was = was_[stretch.j] - was_[stretch.i];
+  const Scalar share = step / length;
+  const bool as_it_was = std::abs(d.dot(d - was)) <= static_cast<Scalar>(k_most_turn) * length * length &&
+                         std::abs(stretch.multiplier) * (wi + wj) <= static_cast<Scalar>(k_most_pull) * length;
+  const Vector pull = share * (as_it_was ? was : d);
   x_[stretch.i] -= wi * pull;
   x_[stretch.j] += wj * pull;
 }
@@ -107,7 +113,10 @@ template <class Scalar> void MeshXpbd<Scalar>::solve_constraints(double h, bool 
   // From the garment itself rather than from the world's origin: floats are finest near 0. What comes back is the
   // constraints' displacement, so that rounding touches nothing else.
   const Vec3 origin = particles_.positions.front();
-  for (std::size_t i = 0; i < x_.size(); ++i) x_[i] = (particles_.positions[i] - origin).template cast<Scalar>();
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    x_[i] = (particles_.positions[i] - origin).template cast<Scalar>();
+    was_[i] = (before_[i] - origin).template cast<Scalar>();
+  }
   predicted_ = x_;
 
   const auto per_h2 = static_cast<Scalar>(1.0 / (h * h));
@@ -144,10 +153,14 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
   if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
   contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
+  triangle_contacts_.begin_frame(query, contacts_, particles_);
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto rub = [&](int i, int collider, const proxies::Contact& contact, double push) {
     contacts_.push_out(particles_.positions[i], before_[i], collider, contact, push, input.friction);
+  };
+  const auto rub_triangle = [&](const TriangleContact& contact) {
+    push_out(contact, contacts_, before_, input.friction, particles_.positions);
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};
@@ -159,9 +172,14 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
     time = lap(time, times_.cloth);
     if (!is_in_world(particles_)) return find_trouble(now, {});
     contacts_.for_each_contact(query, s, pinned_, particles_, rub);
+    triangle_contacts_.for_each_contact(query, contacts_, particles_, rub_triangle);
     time = lap(time, times_.contact);
-    for (int i = 0; i < particles_.count(); ++i)
-      if (!pinned_[i]) particles_.velocities[i] = (particles_.positions[i] - before_[i]) / h;
+    for (int i = 0; i < particles_.count(); ++i) {
+      if (pinned_[i]) continue;
+      Vec3& v = particles_.velocities[i];
+      v = (particles_.positions[i] - before_[i]) / h;
+      if (const double speed = v.norm(); speed > k_fastest_particle) v *= k_fastest_particle / speed;
+    }
     const bool broken = is_broken();
     time = lap(time, times_.cloth);
     if (broken) return find_trouble(now, {});

@@ -1,7 +1,7 @@
 // Extended position-based dynamics in small steps for cloth of any triangles.
 #pragma once
 
-#include "cloth/contact/contact_search.h"
+#include "cloth/contact/triangle_contacts.h"
 #include "cloth/garment/elements.h"
 #include "cloth/solver.h"
 
@@ -19,7 +19,8 @@ namespace tutu::cloth {
 ///   v = (x - x_old) / h.
 /// Constraints, each with dlambda = (-C - a/h^2 lambda) / (sum w |grad C|^2 + a/h^2) [Macklin et al. 2016, XPBD, eq.
 /// 18]:
-///   stretch  C = |x_j - x_i| - L, a = 1/K, for structural and shear springs
+///   stretch  C = |x_j - x_i| - L, a = 1/K, for structural and shear springs, pulling along the edge as it was at the
+///            substep's start (cloth/damping.h)
 ///   bend     C = angle - rest angle, a = 1/k (garment_elements.h); bend springs do not count
 ///   tethers  C = |x - anchor| - length <= 0, rigid, after the others.
 /// They are solved colour by colour (no two of a colour share a particle): stretch up the order of colours, bend,
@@ -37,14 +38,14 @@ namespace tutu::cloth {
 /// most friction * push (Coulomb, on positions).
 template <class Scalar> class MeshXpbd final : public Solver {
 public:
-  explicit MeshXpbd(const Garment& garment);
+  explicit MeshXpbd(const Garment& garment, const SolverOptions& options = {});
 
   void reset(std::span<const Vec3> positions) override;
   void restore(const Particles& state) override;
   std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
-  const ContactCounts& contact_counts() const override { return contacts_.counts(); }
+  ContactCounts contact_counts() const override { return contacts_.counts() + triangle_contacts_.counts(); }
   BroadPhaseView broad_phase() const override { return contacts_.broad_phase(); }
 
 private:
@@ -81,8 +82,10 @@ private:
   std::vector<Stretch> stretches_;     ///< colour by colour
   std::vector<Hinge> hinges_;          ///< colour by colour
   std::vector<TetherLimit> tethers_;
-  std::vector<Vector> x_, predicted_; ///< from a particle of the garment: being solved, and before
+  std::vector<Vector> x_, was_, predicted_; ///< from a particle of the garment: being solved, at the substep's start,
+                                            ///< and before the constraints
   ContactSearch contacts_;
+  TriangleContacts triangle_contacts_;
   SolverTimes times_;
 };
 

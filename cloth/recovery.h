@@ -52,7 +52,7 @@ public:
   std::optional<Unfinished> step(const FrameInput& input, proxies::CollisionQuery& query) override;
   const Particles& particles() const override { return solver_->particles(); }
   const SolverTimes& times() const override { return times_; } ///< of all tries of the last frame
-  const ContactCounts& contact_counts() const override { return solver_->contact_counts(); }
+  ContactCounts contact_counts() const override { return solver_->contact_counts(); }
   BroadPhaseView broad_phase() const override { return solver_->broad_phase(); }
   SelfCollisionCounts self_collision_counts() const override { return solver_->self_collision_counts(); }
 

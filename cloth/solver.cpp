@@ -7,10 +7,10 @@
 namespace tutu::cloth {
 
 std::unique_ptr<Solver> make_solver(const Garment& garment, const SolverOptions& options) {
-  if (options.solver == SolverKind::mass_spring) return std::make_unique<MassSpring>(garment);
+  if (options.solver == SolverKind::mass_spring) return std::make_unique<MassSpring>(garment, options);
   if (garment.rows == 0) { // not woven in rows and columns
-    if (options.double_precision) return std::make_unique<MeshXpbd<double>>(garment);
-    return std::make_unique<MeshXpbd<float>>(garment);
+    if (options.double_precision) return std::make_unique<MeshXpbd<double>>(garment, options);
+    return std::make_unique<MeshXpbd<float>>(garment, options);
   }
   return make_xpbd(garment, options);
 }
@@ -22,7 +22,7 @@ SolverOptions honoured(SolverOptions options, const Garment& garment, proxies::B
     options.passes = 1;
     options.self_collision = false;
   }
-  if (plain || garment.rows == 0 || backend != proxies::Backend::hybrid) {
+  if (backend == proxies::Backend::mesh) { // the true body is asked by particles
     options.features = ContactFeatures::particles;
     options.swept = false;
   }

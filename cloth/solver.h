@@ -41,7 +41,7 @@ public:
 
   virtual const Particles& particles() const = 0;
   virtual const SolverTimes& times() const = 0; ///< of the last frame
-  virtual const ContactCounts& contact_counts() const = 0;
+  virtual ContactCounts contact_counts() const = 0;
   virtual BroadPhaseView broad_phase() const { return {}; } ///< good until the next step()
   virtual SelfCollisionCounts self_collision_counts() const { return {}; }
 };

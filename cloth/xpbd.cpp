@@ -1,8 +1,8 @@
 #include "cloth/xpbd.h"
 
 #include "cloth/air/air.h"
-#include "cloth/contact/contact_search.h"
 #include "cloth/contact/self_collision.h"
+#include "cloth/contact/triangle_contacts.h"
 #include "cloth/damping.h"
 #include "cloth/detail/solver_parts.h"
 #include "cloth/garment/elements.h"
@@ -21,7 +21,7 @@ public:
   Xpbd(const Garment& garment, const SolverOptions& options)
       : garment_(&garment), kernel_(woven_kernel<T>()), sheet_(garment, options.passes > 1), passes_(options.passes),
         pinned_(pinned_flags(garment)), damping_(garment), contacts_(garment, options, sheet_),
-        search_(garment.fabric.contact_offset()) {
+        search_(garment.fabric.contact_offset(), options.swept), triangle_search_(garment, options) {
     for (const Seam& seam : garment.seams)
       seam_shares_.push_back(static_cast<T>(share_of_second(garment, pinned_, seam)));
     if (options.self_collision) {
@@ -60,7 +60,9 @@ public:
     return particles_;
   }
   const SolverTimes& times() const override { return times_; }
-  const ContactCounts& contact_counts() const override { return asks_each_ ? search_.counts() : contacts_.counts(); }
+  ContactCounts contact_counts() const override {
+    return asks_each_ ? search_.counts() + triangle_search_.counts() : contacts_.counts();
+  }
   BroadPhaseView broad_phase() const override { return asks_each_ ? search_.broad_phase() : contacts_.broad_phase(); }
   SelfCollisionCounts self_collision_counts() const override { return self_ ? self_->counts() : SelfCollisionCounts{}; }
 
@@ -89,7 +91,8 @@ private:
   std::vector<T> seam_shares_;
   Damping damping_;
   WovenContacts<T> contacts_;           ///< of whole vectors, where the backend leaves contacts to us
-  ContactSearch search_;                ///< else
+  ContactSearch search_;                ///< else, and
+  TriangleContacts triangle_search_;    ///< between particles
   bool asks_each_ = false;              ///< it is else
   std::optional<Divergence> unusable_;  ///< of the state that was restored last
   std::vector<Vec3> pins_;              ///< where they are to the last bit; none before the first frame
@@ -128,7 +131,8 @@ template <class T> bool Xpbd<T>::part_layers(double h) {
   return true;
 }
 
-/// Each particle by way of the query, in double: the plain form of contact, for the backends that have no other.
+/// Each particle by way of the query, and what lies between them, in double: the plain form of contact, for the
+/// backends that have no other.
 template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s) {
   sheet_.get_positions(particles_.positions);
   search_.for_each_contact(query, s, pinned_, particles_,
@@ -137,6 +141,10 @@ template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const 
                              search_.push_out(x, sheet_.start_position(i), collider, contact, push, input.friction);
                              sheet_.move_to(i, x);
                            });
+  triangle_search_.for_each_contact(query, search_, particles_, [&](const TriangleContact& contact) {
+    push_out(contact, search_, search_.way().starts, input.friction, particles_.positions);
+    for (const int i : contact.corners) sheet_.move_to(i, particles_.positions[i]);
+  });
 }
 
 /// From here on particles() shows the sheet, with pins to the last bit.
@@ -191,8 +199,12 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
   auto time = Clock::now();
   asks_each_ = !query.leaves_contacts();
   sheet_.follow();
-  if (asks_each_) search_.begin_frame(query, input.colliders, particles(), input.seconds);
-  else contacts_.begin_frame(query, input, sheet_);
+  if (asks_each_) {
+    search_.begin_frame(query, input.colliders, particles(), input.seconds);
+    triangle_search_.begin_frame(query, search_, particles());
+  } else {
+    contacts_.begin_frame(query, input, sheet_);
+  }
   time = lap(time, times_.broad);
   if (input.is_stopped()) return Stopped{0};
 

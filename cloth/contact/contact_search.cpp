@@ -42,33 +42,51 @@ void ContactSearch::place(proxies::CollisionQuery& query, double s) {
   placed_.resize(placed_before_.size());
   proxies::colliders_at(colliders_, s, placed_);
   query.place(placed_, colliders_.ground);
-  for (std::size_t c = 0; c < placed_.size(); ++c) // no point of the capsule moves farther than its farther end
-    collider_travel_[c] +=
-        std::max((placed_[c].a - placed_before_[c].a).norm(), (placed_[c].b - placed_before_[c].b).norm());
+  for (std::size_t c = 0; c < placed_.size(); ++c) collider_travel_[c] += substep_way(static_cast<int>(c));
   query_ = &query;
   if (!colliders_.has_body()) return;
   query.place_body(colliders_, s);
   collider_travel_[colliders_.body_index()] += since_before_ * body_way_;
 }
 
-double ContactSearch::bounded_push(int particle, int collider, const proxies::Contact& contact) {
+double ContactSearch::substep_way(int collider) const {
+  if (collider == colliders_.body_index()) return since_before_ * body_way_;
+  if (collider == colliders_.ground_index()) return 0.0;
+  const proxies::Capsule &before = placed_before_[collider], &now = placed_[collider];
+  // No point of the capsule moves farther than its farther end.
+  return std::max((now.a - before.a).norm(), (now.b - before.b).norm());
+}
+
+SweptCollider ContactSearch::swept_way(int proxy) const {
+  const Vec3 spin = colliders_.spin.empty() ? Vec3(Vec3::Zero()) : Vec3(since_before_ * colliders_.spin[proxy]);
+  return {placed_before_[proxy], placed_[proxy], spin, offset_};
+}
+
+std::optional<SweptContact> ContactSearch::swept(int particle, int collider, const Vec3& x) const {
+  if (!swept_ || collider >= static_cast<int>(placed_.size())) return std::nullopt;
+  const double safe = proxies::safe_motion(placed_[collider].narrowest(), offset_);
+  if (particle_way_[particle].norm() + substep_way(collider) < safe) return std::nullopt;
+  return swept_contact(starts_[particle], x, swept_way(collider));
+}
+
+double ContactSearch::bounded_push(int particle, int collider, const Vec3& x, const proxies::Contact& contact) {
   const double needed = offset_ - contact.distance;
-  if (collider != colliders_.body_index()) return needed;
-  const double speed_step = since_before_ * (body_way_ + k_push_out_speed * seconds_);
+  const double speed_step = substep_way(collider) + push_speed_step();
+  if (collider != colliders_.body_index()) return std::min(needed, (x - starts_[particle]).norm() + speed_step);
   const double most = in_body_[particle] ? std::max(0.0, speed_step - particle_way_[particle].dot(contact.normal))
                                          : particle_way_[particle].norm() + speed_step;
   in_body_[particle] = most < needed;
   return std::min(needed, most);
 }
 
-void ContactSearch::account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned,
-                                   const Particles& particles) {
+void ContactSearch::account_travel(proxies::CollisionQuery& query, const Particles& particles) {
   double farthest = 0.0;
+  starts_ = seen_at_;
   for (int i = 0; i < particles.count(); ++i) {
     particle_way_[i] = particles.positions[i] - seen_at_[i];
     particle_travel_[i] += particle_way_[i].norm();
     seen_at_[i] = particles.positions[i];
-    if (!pinned[i]) farthest = std::max(farthest, particle_travel_[i]);
+    farthest = std::max(farthest, particle_travel_[i]);
   }
   if (farthest > margin_) {
     margin_ = std::max(margin_, k_margin_growth * farthest);
@@ -86,8 +104,7 @@ void ContactSearch::push_out(Vec3& x, const Vec3& start, int collider, const pro
 Vec3 ContactSearch::surface_motion(int collider, const Vec3& point) const {
   if (collider == colliders_.body_index()) return since_before_ * query_->body_way(point);
   if (collider == colliders_.ground_index()) return Vec3::Zero();
-  const Vec3 spin = colliders_.spin.empty() ? Vec3(Vec3::Zero()) : Vec3(since_before_ * colliders_.spin[collider]);
-  return proxies::surface_motion(placed_before_[collider], placed_[collider], spin, point);
+  return proxies::surface_motion(placed_before_[collider], placed_[collider], swept_way(collider).spin, point);
 }
 
 } // namespace tutu::cloth

@@ -1,6 +1,7 @@
 // Which particles meet which colliders, substep by substep; what they do then is the solver's business.
 #pragma once
 
+#include "cloth/contact/swept_contact.h"
 #include "cloth/garment/garment.h"
 #include "cloth/state/frame.h"
 #include "cloth/state/particles.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,12 +23,15 @@ namespace tutu::cloth {
 /// point and in the collider's motion, so a pair at distance d stays apart until particle and collider together have
 /// travelled d.
 ///
-/// Out of the true body a particle is pushed in one substep by no more than both have moved, and k_push_out_speed
-/// besides; where that is not enough it began inside, and from then on comes out at that speed: it is not thrown.
+/// A particle is pushed in one substep by no more than both have moved, and k_push_out_speed besides; where that is not
+/// enough it began inside, and comes out at that speed: it is not thrown.
+///
+/// Where a particle and a proxy move more than proxies::safe_motion() in a substep, and `swept` says so, those that
+/// went through are put back first.
 class ContactSearch {
 public:
   /// `offset`: what particles keep from every surface, m >= 0 (Fabric::contact_offset).
-  explicit ContactSearch(double offset) : offset_(offset) {}
+  explicit ContactSearch(double offset, bool swept = false) : offset_(offset), swept_(swept) {}
 
   /// Broad phase for a frame of `seconds`. The spans must live until the next call.
   void begin_frame(proxies::CollisionQuery& query, const proxies::SweptColliders& colliders, const Particles& particles,
@@ -48,16 +53,39 @@ public:
   /// How far the collider's surface has moved since the last substep where it is nearest to `point`, m.
   Vec3 surface_motion(int collider, const Vec3& point) const;
 
+  /// For those who go on where particles end (TriangleContacts), in a substep after for_each_contact(): where particles
+  /// and proxies were when it began, and how far each has gone since candidates were found, m. `moved`: a particle has
+  /// been moved since.
+  struct Way {
+    std::span<const Vec3> starts;
+    std::span<const proxies::Capsule> before, now;
+    std::span<const double> particles, colliders;
+  };
+  Way way() const { return {starts_, placed_before_, placed_, particle_travel_, collider_travel_}; }
+  void moved(int particle, const Vec3& x) {
+    particle_travel_[particle] += (x - seen_at_[particle]).norm();
+    seen_at_[particle] = x;
+  }
+  double offset() const { return offset_; }
+  double margin() const { return margin_; } ///< m a particle may go before candidates are found anew
+  const proxies::SweptColliders& colliders() const { return colliders_; }
+  SweptCollider swept_way(int proxy) const; ///< of a proxy in this substep
+  /// How far the collider's fastest point has moved since the last substep, and how far a point may besides be pushed.
+  double substep_way(int collider) const;
+  double push_speed_step() const { return since_before_ * k_push_out_speed * seconds_; }
+
   const ContactCounts& counts() const { return counts_; }
   BroadPhaseView broad_phase() const { return {{}, candidates_.begin, candidates_.colliders}; }
 
 private:
   void find_candidates(proxies::CollisionQuery& query, const Particles& particles);
   void place(proxies::CollisionQuery& query, double s);
-  void account_travel(proxies::CollisionQuery& query, std::span<const std::uint8_t> pinned, const Particles& particles);
-  double bounded_push(int particle, int collider, const proxies::Contact& contact);
+  void account_travel(proxies::CollisionQuery& query, const Particles& particles);
+  double bounded_push(int particle, int collider, const Vec3& x, const proxies::Contact& contact);
+  std::optional<SweptContact> swept(int particle, int collider, const Vec3& x) const;
 
   double offset_ = 0.0;
+  bool swept_ = false;
   double margin_ = 0.0;                         ///< m a particle may go before candidates are found anew
   double placed_at_ = 0.0, since_before_ = 0.0; ///< of the frame: where placed_ is, and how far from placed_before_
   proxies::SweptColliders colliders_;
@@ -66,7 +94,7 @@ private:
   std::vector<double> wake_;                              ///< per candidate pair: travelled sum at which it may touch
   std::vector<double> particle_travel_, collider_travel_; ///< m since the candidates were found
   std::vector<Vec3> seen_at_;                             ///< where each particle was when it last reported its travel
-  std::vector<Vec3> particle_way_;                        ///< m in this substep
+  std::vector<Vec3> starts_, particle_way_;               ///< of this substep: its start, and the way since, m
   std::vector<std::uint8_t> in_body_;              ///< whether the last push left a particle inside the true body
   double body_way_ = 0.0, seconds_ = 0.0;          ///< m that the true body's fastest vertex goes in the frame
   const proxies::CollisionQuery* query_ = nullptr; ///< that colliders were last placed in
@@ -77,13 +105,18 @@ template <class OnContact>
 void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
                                      Particles& particles, const OnContact& on_contact) {
   place(query, s);
-  account_travel(query, pinned, particles);
+  account_travel(query, particles);
   for (int i = 0; i < particles.count(); ++i) {
     if (pinned[i]) continue;
     for (int pair = candidates_.begin[i]; pair < candidates_.begin[i + 1]; ++pair) {
       const int collider = candidates_.colliders[pair];
       const double travelled = particle_travel_[i] + collider_travel_[collider];
       if (travelled < wake_[pair]) continue;
+      if (const auto gone_through = swept(i, collider, particles.positions[i])) {
+        on_contact(i, collider, gone_through->touch, gone_through->passed);
+        moved(i, particles.positions[i]);
+        ++counts_.contacts;
+      }
       const proxies::Contact contact = query.contact(particles.positions[i], collider);
       ++counts_.queries;
       if (contact.distance >= offset_) {
@@ -91,9 +124,8 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
         if (collider == colliders_.body_index()) in_body_[i] = 0;
         continue;
       }
-      on_contact(i, collider, contact, bounded_push(i, collider, contact));
-      particle_travel_[i] += (particles.positions[i] - seen_at_[i]).norm();
-      seen_at_[i] = particles.positions[i];
+      on_contact(i, collider, contact, bounded_push(i, collider, particles.positions[i], contact));
+      moved(i, particles.positions[i]);
       ++counts_.contacts;
     }
     if (particle_travel_[i] <= margin_) continue;
@@ -106,7 +138,7 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
       const proxies::Contact contact = query.contact(particles.positions[i], collider);
       ++counts_.queries;
       if (contact.distance >= offset_) continue;
-      on_contact(i, collider, contact, bounded_push(i, collider, contact));
+      on_contact(i, collider, contact, bounded_push(i, collider, particles.positions[i], contact));
       ++counts_.contacts;
     }
   }

@@ -39,6 +39,10 @@ struct ContactCounts {
   std::int64_t candidates = 0; ///< pairs the broad phases gave
   std::int64_t queries = 0;    ///< narrow-phase calls
   std::int64_t contacts = 0;   ///< projections
+
+  friend ContactCounts operator+(const ContactCounts& a, const ContactCounts& b) {
+    return {a.searches + b.searches, a.candidates + b.candidates, a.queries + b.queries, a.contacts + b.contacts};
+  }
 };
 
 /// What the last broad phase looked at and gave, in compressed rows like proxies::Candidates: for pictures.

@@ -24,6 +24,8 @@ template <class T> struct Limits {
   Wide<T> per_h2;    ///< taken / h^2, 1/s^2
   Wide<T> kept;      ///< 1 - taken
   Wide<T> elastic;   ///< WovenStep::elastic
+  Wide<T> turn;      ///< k_most_turn
+  Wide<T> pull;      ///< k_most_pull
   Wide<T> broken;    ///< length over rest length at which the run has diverged
   Wide<T> bad;       ///< not 0 in lanes that have seen such an edge
   T* room = nullptr; ///< for the positions of two blocks: whole() is to keep them
@@ -55,36 +57,41 @@ template <class T> HWY_INLINE void note_broken(Wide<T> length, Wide<T> rest, Wid
 
 /// An edge between two particles a lane, longer or shorter by C than it wants to be.
 template <class T> struct WovenEdge {
-  Wide3<T> d;              ///< from one end to the other, m
   Wide<T> squared, length; ///< m2, m; above 0
+  Wide<T> change;          ///< what the length has gained since the substep's start, times the length, m2
   Wide<T> residual;        ///< C - kept C(was), times the length, m2
 
+  /// `now`, `was`: from one end to the other, m.
   HWY_INLINE WovenEdge(const Wide3<T>& now, const Wide3<T>& was, Wide<T> rest, const Limits<T>& limits)
-      : d(now), squared(above_zero<T>(dot(now, now))), length(hn::Sqrt(squared)) {
+      : squared(above_zero<T>(dot(now, now))), length(hn::Sqrt(squared)), change(dot(now, minus(now, was))) {
     // C(was) is C less the change, d . (d - d_was) / length to the first order.
-    const Wide<T> change = dot(now, minus(now, was)), excess = length * (length - rest);
-    const Wide<T> most = limits.elastic * rest * length;
+    const Wide<T> excess = length * (length - rest), most = limits.elastic * rest * length;
     residual = hn::NegMulAdd(limits.kept, hn::Min(hn::Max(excess - change, hn::Neg(most)), most), excess);
   }
+
+  HWY_INLINE auto hardly_turned(const Limits<T>& limits) const { return hn::Abs(change) <= limits.turn * squared; }
 };
 
 /// One spring a lane between a and b: dlambda = (-(C - kept C(was)) - at lambda) / (w_a + w_b + at) (WovenStep::taken);
-/// positive lambda pulls here.
+/// positive lambda pulls here, along the edge as it was (cloth/damping.h).
 template <bool k_repeats, class T>
 HWY_INLINE void solve_spring(Wide3<T>& a, Wide3<T>& b, const Wide3<T>& was, Wide<T> wa, Wide<T> wb, Wide<T> rest,
                              Wide<T> compliance, T* multiplier, bool first_pass, Limits<T>& limits) {
-  const WovenEdge<T> edge(minus(b, a), was, rest, limits);
+  const Wide3<T> now = minus(b, a);
+  const WovenEdge<T> edge(now, was, rest, limits);
   const Wide<T> at = compliance * limits.per_h2;
   note_broken<T>(edge.length, rest, wa + wb, limits);
   Wide<T> residual = edge.residual;
   if constexpr (k_repeats)
     if (!first_pass) residual = residual - at * load(multiplier) * edge.length;
   const Wide<T> step = residual / (edge.squared * (wa + wb + at)); // lambda's step over the length
+  Wide<T> all = step * edge.length;
   if constexpr (k_repeats) {
-    const Wide<T> gained = step * edge.length;
-    hn::Store(first_pass ? gained : load(multiplier) + gained, Tag<T>(), multiplier);
+    if (!first_pass) all = all + load(multiplier);
+    hn::Store(all, Tag<T>(), multiplier);
   }
-  const Wide3<T> pull = times(step, edge.d);
+  const auto as_it_was = hn::And(edge.hardly_turned(limits), hn::Abs(all) * (wa + wb) <= limits.pull * edge.length);
+  const Wide3<T> pull = times(step, choose(as_it_was, was, now));
   a = plus_times<T>(a, wa, pull);
   b = minus_times<T>(b, wb, pull);
 }
@@ -155,9 +162,10 @@ template <class T> void bend_warp(const WovenSheetView<T>& sheet, int block, con
 
 // ---- warp threads
 
-/// One Newton step of (J M^-1 J^T + at) dlambda = C - kept C(was) - at lambda over the whole threads of a block,
-/// positive lambda pulling: tridiagonal, since an edge shares a particle with the next one only. Elimination downwards,
-/// substitution upwards. `multipliers` counts from the block's first row.
+/// One step of (J M^-1 J^T + at) dlambda = C - kept C(was) - at lambda over the whole threads of a block, positive
+/// lambda pulling: tridiagonal, since an edge shares a particle with the next one only. Elimination downwards,
+/// substitution upwards. It would be Newton's but for the directions of pulls, which solve_spring() has too; how they
+/// differ from J is of second order. `multipliers` counts from the block's first row.
 template <class T>
 void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bool first_step, Limits<T>& limits) {
   const auto width = static_cast<int>(hn::Lanes(Tag<T>()));
@@ -167,6 +175,7 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
   T* const n[3] = {nx, nx + field, nx + 2 * field};
   T* const right = nx + 3 * field; // of the eliminated system
   T* const upper = nx + 4 * field; // coupling to the edge below, times m
+  T* const scale = nx + 5 * field; // 1 / length of edges that have hardly turned, 0 of others
   for (int lane = 0; lane < lanes_in(sheet, block); lane += width) {
     const std::ptrdiff_t start = place(sheet, block, 0) + lane;
     Wide3<T> above = load(sheet.x, start), was_above = load(sheet.was, start);
@@ -178,10 +187,11 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
       const Wide3<T> below = load(sheet.x, lower), was_below = load(sheet.was, lower);
       const Wide<T> w_below = load(row_of(sheet.inverse_mass, block, k + 1) + lane);
       const Wide<T> rest = load(row_of(sheet.warp.length, block, k) + lane);
-      const WovenEdge<T> edge(minus(below, above), minus(was_below, was_above), rest, limits);
+      const Wide3<T> now = minus(below, above);
+      const WovenEdge<T> edge(now, minus(was_below, was_above), rest, limits);
       note_broken<T>(edge.length, rest, w_above + w_below, limits);
       const Wide<T> per_length = set(T(1)) / edge.length;
-      const Wide3<T> direction = times(per_length, edge.d);
+      const Wide3<T> direction = times(per_length, now);
       const Wide<T> compliance = load(row_of(sheet.warp.compliance, block, k) + lane) * limits.per_h2;
       Wide<T> residual = per_length * edge.residual;
       if (!first_step) residual = residual - compliance * load(multipliers + at);
@@ -191,6 +201,7 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
       m = set(T(1)) / (w_above + w_below + compliance - coupling * to_above);
       d = (residual - coupling * d) * m;
       store(direction, n, at);
+      hn::Store(hn::IfThenElseZero(edge.hardly_turned(limits), per_length), Tag<T>(), scale + at);
       hn::Store(d, Tag<T>(), right + at);
       above = below;
       was_above = was_below;
@@ -198,21 +209,27 @@ void solve_threads(const WovenSheetView<T>& sheet, int block, T* multipliers, bo
       direction_above = direction;
     }
     Wide<T> step_below = set(T(0));
+    Wide<T> w_low = w_above;
+    Wide3<T> was_low = was_above;
     Wide3<T> pull_below = {set(T(0)), set(T(0)), set(T(0))};
     for (int k = edges - 1; k >= 0; --k) {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(k) * k_lanes + lane;
       Wide<T> step = load(right + at);
       if (k + 1 < edges) step = step - load(upper + at) * step_below;
-      hn::Store(first_step ? step : load(multipliers + at) + step, Tag<T>(), multipliers + at);
-      const Wide3<T> pull = times(step, load(n, at));
+      const Wide<T> all = first_step ? step : load(multipliers + at) + step;
+      hn::Store(all, Tag<T>(), multipliers + at);
       const std::ptrdiff_t lower = start + (k + 1) * k_lanes;
-      const Wide<T> w = load(row_of(sheet.inverse_mass, block, k + 1) + lane);
-      store(plus(load(sheet.x, lower), times(w, minus(pull_below, pull))), sheet.x, lower);
+      const Wide<T> w = load(row_of(sheet.inverse_mass, block, k) + lane), per_length = load(scale + at);
+      const Wide3<T> was = load(sheet.was, lower - k_lanes);
+      const auto as_it_was = hn::And(per_length > set(T(0)), hn::Abs(all) * per_length * (w + w_low) <= limits.pull);
+      const Wide3<T> pull = times(step, choose(as_it_was, times(per_length, minus(was_low, was)), load(n, at)));
+      store(plus(load(sheet.x, lower), times(w_low, minus(pull_below, pull))), sheet.x, lower);
       step_below = step;
       pull_below = pull;
+      w_low = w;
+      was_low = was;
     }
-    const Wide<T> w = load(row_of(sheet.inverse_mass, block, 0) + lane);
-    store(plus(load(sheet.x, start), times(w, pull_below)), sheet.x, start);
+    store(plus(load(sheet.x, start), times(w_low, pull_below)), sheet.x, start);
   }
 }
 
@@ -336,8 +353,14 @@ template <class T> void fetch_starts(const WovenSheetView<T>& sheet) {
 template <bool k_repeats, class T>
 bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
   const Tag<T> tag;
-  Limits<T> limits = {set(step.taken / (step.h * step.h)), set(T(1) - step.taken), set(step.elastic),
-                      set(T(1.0 + k_diverged_stretch)),    hn::Zero(tag),          room};
+  Limits<T> limits = {set(step.taken / (step.h * step.h)),
+                      set(T(1) - step.taken),
+                      set(step.elastic),
+                      set(T(k_most_turn)),
+                      set(T(k_most_pull)),
+                      set(T(1.0 + k_diverged_stretch)),
+                      hn::Zero(tag),
+                      room};
   fetch_starts(sheet);
   if (sheet.has_bend) bend_all(sheet, limits);
   if (sheet.tethers.length)

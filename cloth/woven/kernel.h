@@ -74,7 +74,7 @@ template <class T> struct WovenSheetView {
   bool has_shear = false, has_bend = false;
   WovenTethers<T> tethers;
   T* multipliers[4] = {}; ///< of warp, weft, falling, rising: used when a substep has more than one pass, or tethers
-  T* workspace = nullptr; ///< 5 blocks, for the line solve
+  T* workspace = nullptr; ///< 6 blocks, for the line solve
 };
 
 /// Lanes, the first, that have a column in this block.

@@ -86,7 +86,7 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
   };
   for (T** field : {view_.x, view_.was, view_.v})
     for (int axis = 0; axis < 3; ++axis) field[axis] = array(size);
-  view_.workspace = array(5 * static_cast<std::size_t>(view_.block_stride));
+  view_.workspace = array(6 * static_cast<std::size_t>(view_.block_stride));
   const bool tethered = is_held_at_few_places(weave_, garment);
   with_multipliers = with_multipliers || tethered; // some edges are solved twice then
   view_.multipliers[0] = array(with_multipliers ? size : view_.block_stride);

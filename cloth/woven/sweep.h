@@ -2,19 +2,12 @@
 // to the folder.
 #pragma once
 
+#include "cloth/contact/swept_contact.h"
 #include "cloth/woven/sheet.h"
-#include "proxies/shapes.h"
 
 #include <cstdint>
 
 namespace tutu::cloth {
-
-/// A collider's way through a substep, and what the cloth keeps from it.
-struct SweptCollider {
-  proxies::Capsule start, end; ///< world
-  Vec3 spin = Vec3::Zero();    ///< rotation vector in the substep, rad
-  double offset = 0.0;         ///< m
-};
 
 /// Free particles of one block's rows first..last-1 (and, with `cells`, triangles of the cells to the next block and
 /// row) that touched the collider since the substep's start are put back to the side they touched: outside the plane

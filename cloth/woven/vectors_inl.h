@@ -50,6 +50,10 @@ template <class T> HWY_INLINE Wide3<T> cross(const Wide3<T>& a, const Wide3<T>& 
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+template <class T> HWY_INLINE Wide3<T> choose(hn::Mask<Tag<T>> which, const Wide3<T>& yes, const Wide3<T>& no) {
+  return {hn::IfThenElse(which, yes.x, no.x), hn::IfThenElse(which, yes.y, no.y), hn::IfThenElse(which, yes.z, no.z)};
+}
+
 /// a + s b, fused where the target can.
 template <class T> HWY_INLINE Wide3<T> plus_times(const Wide3<T>& a, Wide<T> s, const Wide3<T>& b) {
   return {hn::MulAdd(s, b.x, a.x), hn::MulAdd(s, b.y, a.y), hn::MulAdd(s, b.z, a.z)};

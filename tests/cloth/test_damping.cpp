@@ -1,5 +1,7 @@
 // How a substep answers: what it takes back, and which way edges pull.
 #include "cloth/damping.h"
+#include "cloth/mesh_xpbd.h"
+#include "cloth/xpbd.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -45,6 +47,45 @@ TEST(Damping, NeverTakesBackMoreThanThereIs) {
   EXPECT_DOUBLE_EQ(Damping(sheet(4, 0.0)).at(1e-4).taken, 1.0);
   EXPECT_DOUBLE_EQ(Damping(sheet(4, 0.002)).at(0.1).taken, 1.0);
   EXPECT_DOUBLE_EQ(Damping(sheet(4, 0.002)).at(0.0005).taken, 0.25);
+}
+
+/// Of a free sheet in empty space, w about its normal: the share of its angular momentum that a second leaves.
+double spin_kept(const Garment& garment, Solver& solver, double w, int substeps) {
+  Particles state{garment.rest_positions, garment.rest_positions};
+  for (Vec3& v : state.velocities) v = Vec3(0, 0, w).cross(v);
+  solver.restore(state);
+  FrameInput input;
+  input.gravity = Vec3::Zero();
+  input.substeps = substeps;
+  const auto query = proxies::make_query(proxies::Backend::brute);
+  const auto momentum = [&](const Particles& particles) {
+    double sum = 0.0;
+    for (int i = 0; i < particles.count(); ++i)
+      sum += garment.masses[i] * particles.positions[i].cross(particles.velocities[i]).z();
+    return sum;
+  };
+  for (int frame = 0; frame < 60; ++frame)
+    if (solver.step(input, *query)) return 0.0;
+  return momentum(solver.particles()) / momentum(state);
+}
+
+TEST(Turning, IsNotDamped) {
+  GarmentDescription description;
+  description.shape = GridShape{13, 13, Vec3(-0.15, 0.15, 0), Vec3(0.3, 0, 0), Vec3(0, -0.3, 0)};
+  description.fabric.drag = 0.0;
+  const Garment garment = build_garment(description);
+  for (const double w : {3.0, 10.0, 20.0})
+    for (const int substeps : {6, 12, 48}) {
+      SCOPED_TRACE(std::to_string(w) + " rad/s, " + std::to_string(substeps) + " substeps");
+      SolverOptions options;
+      EXPECT_NEAR(spin_kept(garment, *make_xpbd(garment, options), w, substeps), 1.0, 2e-3); // its rounding
+      options.double_precision = true;
+      EXPECT_NEAR(spin_kept(garment, *make_xpbd(garment, options), w, substeps), 1.0, 1e-4);
+      MeshXpbd<float> single(garment);
+      EXPECT_NEAR(spin_kept(garment, single, w, substeps), 1.0, 1e-3);
+      MeshXpbd<double> twice(garment);
+      EXPECT_NEAR(spin_kept(garment, twice, w, substeps), 1.0, 1e-4);
+    }
 }
 
 } // namespace

@@ -57,7 +57,7 @@ public:
   }
   const Particles& particles() const override { return particles_; }
   const SolverTimes& times() const override { return times_; }
-  const ContactCounts& contact_counts() const override { return counts_; }
+  ContactCounts contact_counts() const override { return counts_; }
 
 private:
   int bad_;
@@ -139,7 +139,7 @@ TEST(Recovery, ClothThatMustBeStoppedInEveryFrameIsAFailure) {
     }
     const Particles& particles() const override { return particles_; }
     const SolverTimes& times() const override { return times_; }
-    const ContactCounts& contact_counts() const override { return counts_; }
+    ContactCounts contact_counts() const override { return counts_; }
 
   private:
     Particles particles_ = patch_at(0, 0);

@@ -254,14 +254,22 @@ private:
   struct Solved {
     Vec3 direction;
     double residual, at; ///< m, 1 / (K h^2) times taken
+    Vec3 before;         ///< from end to end at the substep's start, over the length now
+    bool turned;         ///< or grown or shrunk, by too much to pull along `before`
   };
+  /// What a pull moves both ends by, for each unit of inverse mass: along the edge as it was where that is allowed.
+  static Vec3 pull_of(const Solved& now, double gained, double all, double weights, double length) {
+    if (now.turned || std::abs(all) * weights > cloth::k_most_pull * length) return gained * now.direction;
+    return gained * now.before;
+  }
   Solved solved(const Edge& edge, const cloth::WovenStep<double>& step) {
     const Vec3 d = x[edge.j] - x[edge.i], before = was[edge.j] - was[edge.i];
     const double length = d.norm(), excess = length - edge.rest, most = step.elastic * edge.rest;
     check(edge, length);
     const double excess_before = excess - d.dot(d - before) / length; // to the first order
     return {d / length, excess - (1.0 - step.taken) * std::clamp(excess_before, -most, most),
-            step.taken / (edge.stiffness * step.h * step.h)};
+            step.taken / (edge.stiffness * step.h * step.h), before / length,
+            std::abs(1.0 - before.dot(d) / (length * length)) > cloth::k_most_turn};
   }
 
   /// dlambda = (residual - at lambda) / (w_i + w_j + at).
@@ -271,8 +279,9 @@ private:
     const double wi = inverse_mass_[edge.i], wj = inverse_mass_[edge.j];
     const double gained = (now.residual - (with_lambda ? now.at * edge.lambda : 0.0)) / (wi + wj + now.at);
     edge.lambda += gained;
-    x[edge.i] += wi * gained * now.direction;
-    x[edge.j] -= wj * gained * now.direction;
+    const Vec3 pull = pull_of(now, gained, edge.lambda, wi + wj, (x[edge.j] - x[edge.i]).norm());
+    x[edge.i] += wi * pull;
+    x[edge.j] -= wj * pull;
   }
 
   /// (J W J^T + at) dlambda = residual - at lambda over the thread that starts at particle `top`, as a dense system.
@@ -280,10 +289,11 @@ private:
     const int edges = rows_ - 1;
     Eigen::MatrixXd gradient = Eigen::MatrixXd::Zero(edges, 3 * rows_); // of -C: positive lambda pulls
     Eigen::VectorXd weights(3 * rows_), right(edges), at(edges);
+    std::vector<Solved> all;
     for (int row = 0; row < rows_; ++row) weights.segment<3>(3 * row).setConstant(inverse_mass_[top + row * columns_]);
     for (int k = 0; k < edges; ++k) {
       const Edge& edge = warp_[top + k * columns_];
-      const Solved now = solved(edge, step);
+      const Solved& now = all.emplace_back(solved(edge, step));
       gradient.block<1, 3>(k, 3 * k) = now.direction.transpose();
       gradient.block<1, 3>(k, 3 * k + 3) = -now.direction.transpose();
       at[k] = now.at;
@@ -292,9 +302,16 @@ private:
     Eigen::MatrixXd system = gradient * weights.asDiagonal() * gradient.transpose();
     system.diagonal() += at;
     const Eigen::VectorXd gained = system.ldlt().solve(right);
-    const Eigen::VectorXd way = weights.asDiagonal() * gradient.transpose() * gained;
-    for (int k = 0; k < edges; ++k) warp_[top + k * columns_].lambda += gained[k];
-    for (int row = 0; row < rows_; ++row) x[top + row * columns_] += way.segment<3>(3 * row);
+    const std::vector<Vec3> from = x;
+    for (int k = 0; k < edges; ++k) {
+      Edge& edge = warp_[top + k * columns_];
+      edge.lambda += gained[k];
+      const int upper = top + k * columns_, lower = upper + columns_;
+      const double wi = inverse_mass_[upper], wj = inverse_mass_[lower];
+      const Vec3 pull = pull_of(all[k], gained[k], edge.lambda, wi + wj, (from[lower] - from[upper]).norm());
+      x[upper] += wi * pull;
+      x[lower] -= wj * pull;
+    }
   }
 
   void bend(const cloth::WovenStep<double>& step) {

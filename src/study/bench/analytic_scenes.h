@@ -29,7 +29,7 @@ std::vector<AnalyticFigure> free_fall(const RunSettings& setup);
 std::vector<AnalyticFigure> slope(double friction, const RunSettings& setup);
 
 /// A row of particles on stiff threads, let go at 0.5 rad, for six swings. Period 2 pi sqrt(L / g) (1 + a^2 / 16 +
-/// 11 a^4 / 3072) for amplitude a; energy must not grow, nor be lost faster than a first-order scheme loses it.
+/// 11 a^4 / 3072) for amplitude a; energy must neither grow nor be lost.
 std::vector<AnalyticFigure> pendulum(const RunSettings& setup);
 
 /// A narrow band of 1.2 m between points 1 m apart: its sag is that of the catenary.

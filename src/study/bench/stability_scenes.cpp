@@ -103,7 +103,7 @@ StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed) {
   scene.garment.fabric.thickness = leg.thickness;
   scene.start = uneven(scene.garment, random);
   const double end = k_begin + (k_to - k_from) / leg.speed;
-  scene.seconds = end + 3.0;
+  scene.seconds = end + 4.0; // it swings on: the air alone brings it to rest
   scene.looks = static_cast<int>(std::ceil(leg.speed / k_stability_frames_per_second / leg.radius));
   scene.pose = [end, radius = leg.radius, pinned = pins_at_rest(scene.garment)](
                    double t, std::vector<Capsule>& capsules, std::vector<Vec3>& pins) {
@@ -127,7 +127,7 @@ StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed) {
                            cells.along_warp ? "along" : "across");
   scene.garment = hanging_sheet(k_particles, size, top, cells.weave);
   scene.start = uneven(scene.garment, random);
-  scene.seconds = end + 2.0;
+  scene.seconds = end + 3.0;
   const double middle = top - 0.5 * size;
   const Vec3 a = cells.along_warp ? Vec3(0, top - 0.3 * size, 0) : Vec3(-0.7 * size, middle, 0);
   const Vec3 b = cells.along_warp ? Vec3(0, top - 1.3 * size, 0) : Vec3(0.7 * size, middle, 0);

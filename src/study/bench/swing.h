@@ -5,14 +5,14 @@
 
 namespace tutu::app {
 
-/// Sheets of 0.6 m and 20 x 20 particles without drag, at `setup.substeps` beside k_swing_substeps. Let go: pulled
-/// longer by a hundredth (bounce), pulled aside (shear): what the fabric's damping decides, held to k_swing_tolerance.
-/// From 80 degrees about the edge that holds them (swing): that still loses to the step's direction, and is measured
-/// only, as is the angular momentum of a sheet that spins in empty space. Decay is that of amplitude: half the
-/// logarithm of the energy above rest.
+/// Sheets of 0.6 m and 20 x 20 particles without drag, at `setup.substeps` beside k_swing_substeps. Let go: from 80
+/// degrees about the edge that holds them (swing), pulled longer by a hundredth (bounce), pulled aside (shear). Decay
+/// is that of amplitude: half the logarithm of the energy above rest. And the angular momentum that a sheet keeps which
+/// spins in empty space.
 std::vector<AnalyticFigure> swing(const RunSettings& setup);
 
 inline constexpr int k_swing_substeps = 48;      ///< what decays are compared with
 inline constexpr double k_swing_tolerance = 0.1; ///< of a decay
+inline constexpr double k_spin_tolerance = 1.0;  ///< % of the angular momentum
 
 } // namespace tutu::app

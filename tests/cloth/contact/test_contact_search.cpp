@@ -9,13 +9,18 @@ using namespace tutu::cloth;
 
 namespace {
 
-/// The report's response without any memory: every particle against every collider, in order.
-void respond_plainly(std::span<const proxies::Capsule> colliders, double offset, Particles& particles) {
+/// The report's response without any memory: every particle against every collider, in order; out by no more than both
+/// have moved in the substep of h seconds, and the push-out speed.
+void respond_plainly(std::span<const proxies::Capsule> before, std::span<const proxies::Capsule> colliders,
+                     double offset, const std::vector<Vec3>& starts, double h, Particles& particles) {
   for (int i = 0; i < particles.count(); ++i)
-    for (const proxies::Capsule& capsule : colliders) {
-      const proxies::Contact contact = proxies::signed_distance(particles.positions[i], capsule);
+    for (std::size_t c = 0; c < colliders.size(); ++c) {
+      const proxies::Contact contact = proxies::signed_distance(particles.positions[i], colliders[c]);
       if (contact.distance >= offset) continue;
-      particles.positions[i] += (offset - contact.distance) * contact.normal;
+      const double most = (particles.positions[i] - starts[i]).norm() +
+                          (std::max((colliders[c].a - before[c].a).norm(), (colliders[c].b - before[c].b).norm()) +
+                           h * k_push_out_speed);
+      particles.positions[i] += std::min(offset - contact.distance, most) * contact.normal;
       Vec3& v = particles.velocities[i];
       v -= v.dot(contact.normal) * contact.normal;
     }
@@ -64,13 +69,16 @@ TEST(ContactSearch, IsThePlainSearchToTheBit) {
       const proxies::SweptColliders colliders{start, end, std::nullopt};
       ContactSearch search(offset);
       search.begin_frame(*query, colliders, fast, seconds);
+      std::vector<proxies::Capsule> before = start;
       for (int k = 0; k < substeps; ++k) {
-        const double s = (k + 1.0) / substeps;
+        const double s = (k + 1.0) / substeps, h = (s - static_cast<double>(k) / substeps) * seconds;
+        const std::vector<Vec3> starts = plain.positions;
         for (Particles* particles : {&fast, &plain})
           for (int i = 0; i < 300; ++i) particles->positions[i] += particles->velocities[i] * (seconds / substeps);
         respond(search, *query, s, pinned, fast);
         proxies::colliders_at(colliders, s, placed);
-        respond_plainly(placed, offset, plain);
+        respond_plainly(before, placed, offset, starts, h, plain);
+        before = placed;
       }
       for (int i = 0; i < 300; ++i) {
         if (backend != proxies::Backend::fcl) {
@@ -96,7 +104,7 @@ TEST(ContactSearch, ProjectsOntoSphereAndRoundedCylinder) {
   particles.velocities.assign(6, Vec3(-1, -2, 0.5));
   const std::vector<std::uint8_t> pinned = {0, 0, 0, 0, 0, 0};
   ContactSearch search(0.0);
-  search.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0 / 60);
+  search.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0); // time enough to come out
   respond(search, *query, 1.0, pinned, particles);
   EXPECT_LT((particles.positions[0] - Vec3(0.1, 0, 0)).norm(), 1e-14);
   EXPECT_LT((particles.velocities[0] - Vec3(0, -2, 0.5)).norm(), 1e-14);

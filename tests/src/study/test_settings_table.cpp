@@ -5,9 +5,9 @@
 #include "src/run/settings_table.h"
 #include "src/scene/load.h"
 #include "src/scene/scene_override.h"
+#include "src/study/bench/mesh_sheet.h"
 #include "src/study/chart/row.h"
 #include "src/study/chart/settings_grid.h"
-#include "src/study/bench/mesh_sheet.h"
 #include "tests/support/paths.h"
 #include "tests/support/run_program.h"
 #include "tests/support/small_scene.h"
@@ -139,17 +139,18 @@ cloth::Garment meshed() {
 struct Without {
   const char* name;
   int value;
-  bool in_springs, on_meshes, against_other_backends; ///< refused there
+  bool in_springs, on_meshes, against_the_body; ///< refused there
 };
-constexpr Without k_without[] = {{"passes", 2, true, true, false},  {"self_collision", 1, true, true, false},
-                                 {"features", 0, true, true, true}, {"features", 2, true, true, true},
-                                 {"swept", 1, true, true, true},    {"double_precision", 0, true, false, false}};
+constexpr Without k_without[] = {{"passes", 2, true, true, false},    {"self_collision", 1, true, true, false},
+                                 {"features", 0, false, false, true}, {"features", 2, false, false, true},
+                                 {"swept", 1, false, false, true},    {"double_precision", 0, true, false, false}};
 
 TEST(SettingsTable, WhatAGarmentDoesNotHonourIsTold) {
   const std::vector<cloth::Garment> grids = {woven()}, meshes = {meshed()};
   for (const SettingRow& row : settings_table())
     for (const auto solver : {cloth::SolverKind::xpbd, cloth::SolverKind::mass_spring})
-      for (const auto backend : {proxies::Backend::hybrid, proxies::Backend::fcl, proxies::Backend::brute})
+      for (const auto backend :
+           {proxies::Backend::hybrid, proxies::Backend::fcl, proxies::Backend::brute, proxies::Backend::mesh})
         for (const std::vector<cloth::Garment>* garments : {&grids, &meshes})
           for (int value = row.least; value <= std::min(row.most, row.least + 2); ++value) {
             RunSettings settings;
@@ -163,7 +164,7 @@ TEST(SettingsTable, WhatAGarmentDoesNotHonourIsTold) {
               if (without.name == std::string_view(row.name) && without.value == value && !fixed)
                 refused = refused || (springs && without.in_springs) ||
                           (garments == &meshes && !springs && without.on_meshes) ||
-                          (backend != proxies::Backend::hybrid && without.against_other_backends);
+                          (backend == proxies::Backend::mesh && without.against_the_body);
             if (row.name == std::string_view("passes") && value > 2 && (springs || garments == &meshes)) refused = true;
             EXPECT_EQ(unhonoured(row, settings, *garments).has_value(), refused)
                 << row.name << " " << value << (springs ? ", springs" : "") << (garments == &meshes ? ", mesh" : "");
@@ -208,7 +209,8 @@ TEST_F(StatedSettings, InASceneAreRefusedWithTheirPlace) {
 }
 
 TEST_F(StatedSettings, InPlaceOfTheScenesAreRefusedByTheirOption) {
-  EXPECT_THAT(refusal(R"("solver": {})", {"solver=mass_spring", "swept=true"}), HasSubstr("--split: found swept on"));
+  EXPECT_THAT(refusal(R"("solver": {})", {"solver=mass_spring", "self_collision=true"}),
+              HasSubstr("--split: found self collision on"));
   EXPECT_EQ(refusal(R"("solver": {"passes": 3})", {"solver=mass_spring"}), "") << "what only that made useless";
   EXPECT_THAT(notes_, ::testing::Contains(HasSubstr("3 passes of the scene does not count")));
   EXPECT_THAT(refusal(R"("solver": {"name": "mass_spring", "passes": 3})", {"substeps=4"}),

@@ -1,0 +1,129 @@
+#include "cloth/contact/triangle_contacts.h"
+
+#include "cloth/state/tolerances.h"
+#include "proxies/distance/feature_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tutu::cloth {
+
+void push_out(const TriangleContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
+              std::span<const double> friction, std::vector<Vec3>& x) {
+  const Vec3 from = contact.point(x);
+  Vec3 to = from;
+  search.push_out(to, contact.point(starts), contact.collider, contact.contact, contact.push, friction);
+  contact.move(x, to - from);
+}
+
+TriangleContacts::TriangleContacts(const Garment& garment, const SolverOptions& options)
+    : features_(options.features), swept_(options.swept) {
+  if (features_ == ContactFeatures::particles) return;
+  const std::vector<std::uint8_t> pinned = pinned_flags(garment);
+  for (int i = 0; i < garment.particle_count(); ++i)
+    inverse_masses_.push_back(pinned[i] ? 0.0 : 1.0 / garment.masses[i]);
+  for (const auto& [a, b, c] : garment.triangles) {
+    if (pinned[a] && pinned[b] && pinned[c]) continue;
+    triangles_.push_back({static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)});
+  }
+  boxes_.resize(triangles_.size());
+}
+
+void TriangleContacts::begin_frame(proxies::CollisionQuery& query, const ContactSearch& search,
+                                   const Particles& particles) {
+  if (features_ != ContactFeatures::particles) find_pairs(query, search, particles);
+}
+
+void TriangleContacts::find_pairs(proxies::CollisionQuery& query, const ContactSearch& search,
+                                  const Particles& particles) {
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    boxes_[t].setEmpty();
+    for (const int i : triangles_[t]) boxes_[t].extend(particles.positions[i]);
+    const Vec3 grown = Vec3::Constant(search.offset() + search.margin());
+    boxes_[t].min() -= grown;
+    boxes_[t].max() += grown;
+  }
+  query.find_for_boxes(search.colliders(), boxes_, candidates_);
+  const auto proxies = static_cast<int>(search.way().now.size());
+  pairs_.clear();
+  begin_.assign(1, 0);
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    for (const int collider : candidates_.of(static_cast<int>(t)))
+      if (collider < proxies) // a plane meets the corners first
+        pairs_.push_back({collider, squared_edge_for(search.way().now[collider], search.offset())});
+    begin_.push_back(static_cast<int>(pairs_.size()));
+  }
+  searches_ = search.counts().searches;
+  ++counts_.searches;
+  counts_.candidates += static_cast<std::int64_t>(pairs_.size());
+}
+
+double TriangleContacts::squared_edge_for(const proxies::Capsule& proxy, double offset) const {
+  if (features_ == ContactFeatures::triangles) return -1.0;
+  // The middle of a triangle bent around the collider with legs of length l lies (2/9) l^2 within the square of its
+  // corners' distance from the axis.
+  const double radius = proxy.narrowest(), kept = radius + offset;
+  return 4.5 * (kept * kept - radius * radius);
+}
+
+std::optional<TriangleContact> TriangleContacts::with_levers(const Triangle& triangle, TriangleContact contact) const {
+  double lightness = 0.0; // sum of inverse mass times squared weight
+  double most = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const double w = inverse_masses_[triangle[k]] * contact.weights[k];
+    contact.levers[k] = w;
+    lightness += w * contact.weights[k];
+    most = std::max(most, w);
+  }
+  if (!(lightness > 0.0)) return std::nullopt; // at a pinned corner, or between two
+  lightness = std::max(lightness, most / k_longest_lever);
+  for (double& lever : contact.levers) lever /= lightness;
+  contact.corners = triangle;
+  return contact;
+}
+
+std::optional<TriangleContact> TriangleContacts::swept(const Triangle& triangle, const ContactSearch& search, int proxy,
+                                                       const Particles& particles) const {
+  if (!swept_) return std::nullopt;
+  const ContactSearch::Way way = search.way();
+  std::array<Vec3, 3> from, to;
+  double motion = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    from[k] = way.starts[triangle[k]];
+    to[k] = particles.positions[triangle[k]];
+    motion = std::max(motion, (to[k] - from[k]).norm());
+  }
+  if (motion + search.substep_way(proxy) < proxies::safe_motion(way.now[proxy].narrowest(), search.offset()))
+    return std::nullopt;
+  const auto contact = swept_contact(from, to, search.swept_way(proxy));
+  if (!contact) return std::nullopt;
+  return with_levers(triangle, {{}, contact->weights, {}, proxy, contact->touch, contact->passed});
+}
+
+std::optional<TriangleContact> TriangleContacts::found(const Triangle& triangle, const ContactSearch& search,
+                                                       Pair& pair, double travelled, const Particles& particles) {
+  const ContactSearch::Way way = search.way();
+  const auto& [a, b, c] = triangle;
+  const std::vector<Vec3>& x = particles.positions;
+  const proxies::Capsule& proxy = way.now[pair.collider];
+  const auto ask = [&](const Vec3& side) { return proxies::triangle_contact(x[a], x[b], x[c], proxy, side); };
+  proxies::FeatureContact contact = ask(Vec3::Zero());
+  ++counts_.queries;
+  if (contact.distance >= search.offset()) {
+    pair.wake = travelled + (contact.distance - search.offset()) - k_travel_slack;
+    return std::nullopt;
+  }
+  const auto at = [&](std::span<const Vec3> corners) {
+    return Vec3(contact.weights[0] * corners[a] + contact.weights[1] * corners[b] + contact.weights[2] * corners[c]);
+  };
+  if (contact.feature == proxies::ClothFeature::crossing) { // back to where it was when the substep began
+    const proxies::Capsule& before = way.before[pair.collider];
+    contact = ask(at(way.starts) - (before.a + contact.on_axis * (before.b - before.a)));
+  }
+  const double gone = (at(x) - at(way.starts)).norm();
+  const double push =
+      std::min(search.offset() - contact.distance, gone + search.substep_way(pair.collider) + search.push_speed_step());
+  return with_levers(triangle, {{}, contact.weights, {}, pair.collider, contact, push});
+}
+
+} // namespace tutu::cloth

@@ -1,0 +1,118 @@
+// What lies between particles against proxies: the edges and faces of a garment of any triangles, in plain double.
+#pragma once
+
+#include "cloth/contact/contact_search.h"
+#include "cloth/garment/garment.h"
+#include "cloth/state/solver_options.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace tutu::cloth {
+
+/// A point of a triangle that is nearer to a collider than the cloth keeps.
+struct TriangleContact {
+  std::array<int, 3> corners = {};
+  std::array<double, 3> weights = {}; ///< of the point
+  std::array<double, 3> levers = {};  ///< corner k moves by levers[k] * what the point has to; 0 for pinned corners
+  int collider = 0;
+  proxies::Contact contact;
+  double push = 0.0; ///< m, > 0, along the contact's normal
+
+  Vec3 point(std::span<const Vec3> x) const {
+    return weights[0] * x[corners[0]] + weights[1] * x[corners[1]] + weights[2] * x[corners[2]];
+  }
+  /// Moves the corners so that the point moves by `way` (or less, where levers are bounded).
+  void move(std::vector<Vec3>& x, const Vec3& way) const {
+    for (int k = 0; k < 3; ++k) x[corners[k]] += levers[k] * way;
+  }
+};
+
+/// Takes the point, which began the substep where `starts` says, out along the normal, and back by what rubs, as
+/// ContactSearch::push_out() does a particle.
+void push_out(const TriangleContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
+              std::span<const double> friction, std::vector<Vec3>& x);
+
+/// The triangles of one garment against the proxies of a scene, after its particles have met them (ContactSearch, which
+/// it goes along with). Each triangle and proxy have one contact a substep, at the point that is the deepest
+/// (proxies::triangle_contact): a corner, within an edge, or within the face. The corners that move it are moved by
+/// their inverse masses times their weights, but no farther than k_longest_lever times the point itself.
+///
+/// Pairs that cannot have met since they were last asked are skipped, as in ContactSearch. `automatic` asks only pairs
+/// of a triangle that is so large at this moment, for so thin a proxy, that particles which keep the offset could leave
+/// the proxy in it.
+class TriangleContacts {
+public:
+  TriangleContacts(const Garment& garment, const SolverOptions& options);
+
+  /// Broad phase for a frame, after that of `search`.
+  void begin_frame(proxies::CollisionQuery& query, const ContactSearch& search, const Particles& particles);
+
+  /// In a substep, after search.for_each_contact() and with the same particles: calls
+  /// on_contact(TriangleContact) for each contact, found where those before it left the corners; on_contact moves them.
+  template <class OnContact>
+  void for_each_contact(proxies::CollisionQuery& query, ContactSearch& search, Particles& particles,
+                        const OnContact& on_contact);
+
+  const ContactCounts& counts() const { return counts_; }
+
+private:
+  using Triangle = std::array<int, 3>; ///< corners
+  struct Pair {
+    int collider = 0;
+    double squared_edge = 0.0; ///< m2: asked where the longest edge is longer
+    double wake = 0.0;         ///< travelled sum at which the two may touch, m
+  };
+
+  void find_pairs(proxies::CollisionQuery& query, const ContactSearch& search, const Particles& particles);
+  double squared_edge_for(const proxies::Capsule& proxy, double offset) const; ///< of Pair
+  std::optional<TriangleContact> swept(const Triangle& triangle, const ContactSearch& search, int proxy,
+                                       const Particles& particles) const;
+  /// Nothing where the two are clear of each other; the pair then knows for how long.
+  std::optional<TriangleContact> found(const Triangle& triangle, const ContactSearch& search, Pair& pair,
+                                       double travelled, const Particles& particles);
+  std::optional<TriangleContact> with_levers(const Triangle& triangle, TriangleContact contact) const;
+
+  ContactFeatures features_;
+  bool swept_ = true;
+  std::vector<Triangle> triangles_;
+  std::vector<double> inverse_masses_; ///< 1/kg, 0 for pinned particles
+  std::vector<proxies::Box> boxes_;
+  proxies::Candidates candidates_;
+  std::vector<int> begin_; ///< of each triangle in pairs_; triangles + 1 entries
+  std::vector<Pair> pairs_;
+  std::int64_t searches_ = 0; ///< of `search`, when pairs were last found
+  ContactCounts counts_;
+};
+
+template <class OnContact>
+void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactSearch& search, Particles& particles,
+                                        const OnContact& on_contact) {
+  if (features_ == ContactFeatures::particles) return;
+  if (searches_ != search.counts().searches) find_pairs(query, search, particles);
+  const ContactSearch::Way way = search.way();
+  for (std::size_t t = 0; t < triangles_.size(); ++t) {
+    const Triangle& triangle = triangles_[t];
+    for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
+      Pair& pair = pairs_[p];
+      const auto& [a, b, c] = triangle;
+      const double travelled =
+          std::max({way.particles[a], way.particles[b], way.particles[c]}) + way.colliders[pair.collider];
+      if (travelled < pair.wake) continue;
+      const std::vector<Vec3>& x = particles.positions;
+      if (std::max({(x[b] - x[a]).squaredNorm(), (x[c] - x[b]).squaredNorm(), (x[a] - x[c]).squaredNorm()}) <=
+          pair.squared_edge)
+        continue;
+      const auto meet = [&](const TriangleContact& contact) {
+        on_contact(contact);
+        for (const int i : triangle) search.moved(i, particles.positions[i]);
+        ++counts_.contacts;
+      };
+      if (const auto contact = swept(triangle, search, pair.collider, particles)) meet(*contact);
+      if (const auto contact = found(triangle, search, pair, travelled, particles)) meet(*contact);
+    }
+  }
+}
+
+} // namespace tutu::cloth
