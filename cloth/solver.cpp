@@ -22,10 +22,7 @@ SolverOptions honoured(SolverOptions options, const Garment& garment, proxies::B
     options.passes = 1;
     options.self_collision = false;
   }
-  if (backend == proxies::Backend::mesh) { // the true body is asked by particles
-    options.features = ContactFeatures::particles;
-    options.swept = false;
-  }
+  if (backend == proxies::Backend::mesh) options.swept = false; // the true body is not
   return options;
 }
 

@@ -16,22 +16,23 @@ void push_out(const TriangleContact& contact, const ContactSearch& search, std::
   contact.move(x, to - from);
 }
 
-TriangleContacts::TriangleContacts(const Garment& garment, const SolverOptions& options)
-    : features_(options.features), swept_(options.swept) {
-  if (features_ == ContactFeatures::particles) return;
-  const std::vector<std::uint8_t> pinned = pinned_flags(garment);
-  for (int i = 0; i < garment.particle_count(); ++i)
-    inverse_masses_.push_back(pinned[i] ? 0.0 : 1.0 / garment.masses[i]);
-  for (const auto& [a, b, c] : garment.triangles) {
-    if (pinned[a] && pinned[b] && pinned[c]) continue;
-    triangles_.push_back({static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)});
-  }
+void TriangleContacts::list_triangles() {
+  const std::vector<std::uint8_t> pinned = pinned_flags(*garment_);
+  inverse_masses_.reserve(pinned.size());
+  for (int i = 0; i < garment_->particle_count(); ++i)
+    inverse_masses_.push_back(pinned[i] ? 0.0 : 1.0 / garment_->masses[i]);
+  triangles_.reserve(garment_->triangles.size());
+  for (const auto& [a, b, c] : garment_->triangles)
+    if (!(pinned[a] && pinned[b] && pinned[c]))
+      triangles_.push_back({static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)});
   boxes_.resize(triangles_.size());
 }
 
 void TriangleContacts::begin_frame(proxies::CollisionQuery& query, const ContactSearch& search,
                                    const Particles& particles) {
-  if (features_ != ContactFeatures::particles) find_pairs(query, search, particles);
+  if (features_ == ContactFeatures::particles) return;
+  if (inverse_masses_.empty()) list_triangles();
+  find_pairs(query, search, particles);
 }
 
 void TriangleContacts::find_pairs(proxies::CollisionQuery& query, const ContactSearch& search,
@@ -53,6 +54,7 @@ void TriangleContacts::find_pairs(proxies::CollisionQuery& query, const ContactS
         pairs_.push_back({collider, squared_edge_for(search.way().now[collider], search.offset())});
     begin_.push_back(static_cast<int>(pairs_.size()));
   }
+  body_wakes_.assign(triangles_.size(), 0.0);
   searches_ = search.counts().searches;
   ++counts_.searches;
   counts_.candidates += static_cast<std::int64_t>(pairs_.size());
@@ -120,10 +122,15 @@ std::optional<TriangleContact> TriangleContacts::found(const Triangle& triangle,
     const proxies::Capsule& before = way.before[pair.collider];
     contact = ask(at(way.starts) - (before.a + contact.on_axis * (before.b - before.a)));
   }
-  const double gone = (at(x) - at(way.starts)).norm();
-  const double push =
-      std::min(search.offset() - contact.distance, gone + search.substep_way(pair.collider) + search.push_speed_step());
-  return with_levers(triangle, {{}, contact.weights, {}, pair.collider, contact, push});
+  auto met = with_levers(triangle, {{}, contact.weights, {}, pair.collider, contact, 0.0});
+  if (met) met->push = bounded_push(*met, search, contact.distance, x);
+  return met;
+}
+
+double TriangleContacts::bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,
+                                      const std::vector<Vec3>& x) const {
+  const double gone = (contact.point(x) - contact.point(search.way().starts)).norm();
+  return std::min(search.offset() - distance, gone + search.substep_way(contact.collider) + search.push_speed_step());
 }
 
 } // namespace tutu::cloth

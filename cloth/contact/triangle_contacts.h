@@ -1,4 +1,5 @@
-// What lies between particles against proxies: the edges and faces of a garment of any triangles, in plain double.
+// What lies between particles against proxies and the true body: the edges and faces of a garment of any triangles, in
+// plain double.
 #pragma once
 
 #include "cloth/contact/contact_search.h"
@@ -34,17 +35,22 @@ struct TriangleContact {
 void push_out(const TriangleContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
               std::span<const double> friction, std::vector<Vec3>& x);
 
-/// The triangles of one garment against the proxies of a scene, after its particles have met them (ContactSearch, which
-/// it goes along with). Each triangle and proxy have one contact a substep, at the point that is the deepest
-/// (proxies::triangle_contact): a corner, within an edge, or within the face. The corners that move it are moved by
-/// their inverse masses times their weights, but no farther than k_longest_lever times the point itself.
+/// The triangles of one garment against the proxies of a scene, or its true body, after its particles have met them
+/// (ContactSearch, which it goes along with). Each triangle and proxy have one contact a substep, at the point that is
+/// the deepest (proxies::triangle_contact): a corner, within an edge, or within the face. The corners that move it are
+/// moved by their inverse masses times their weights, but no farther than k_longest_lever times the point itself.
 ///
 /// Pairs that cannot have met since they were last asked are skipped, as in ContactSearch. `automatic` asks only pairs
 /// of a triangle that is so large at this moment, for so thin a proxy, that particles which keep the offset could leave
 /// the proxy in it.
+///
+/// Against the true body a triangle has one contact for each pair of features that meet (proxies/body/body_features.h),
+/// down to k_body_depth; with `automatic` too. They are not swept.
 class TriangleContacts {
 public:
-  TriangleContacts(const Garment& garment, const SolverOptions& options);
+  /// The garment must outlive it. Takes no memory before its first frame.
+  TriangleContacts(const Garment& garment, const SolverOptions& options)
+      : garment_(&garment), features_(options.features), swept_(options.swept) {}
 
   /// Broad phase for a frame, after that of `search`.
   void begin_frame(proxies::CollisionQuery& query, const ContactSearch& search, const Particles& particles);
@@ -65,6 +71,7 @@ private:
     double wake = 0.0;         ///< travelled sum at which the two may touch, m
   };
 
+  void list_triangles();
   void find_pairs(proxies::CollisionQuery& query, const ContactSearch& search, const Particles& particles);
   double squared_edge_for(const proxies::Capsule& proxy, double offset) const; ///< of Pair
   std::optional<TriangleContact> swept(const Triangle& triangle, const ContactSearch& search, int proxy,
@@ -72,8 +79,14 @@ private:
   /// Nothing where the two are clear of each other; the pair then knows for how long.
   std::optional<TriangleContact> found(const Triangle& triangle, const ContactSearch& search, Pair& pair,
                                        double travelled, const Particles& particles);
+  template <class OnContact>
+  void meet_body(proxies::CollisionQuery& query, ContactSearch& search, std::size_t triangle, Particles& particles,
+                 const OnContact& on_contact);
+  double bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,
+                      const std::vector<Vec3>& x) const;
   std::optional<TriangleContact> with_levers(const Triangle& triangle, TriangleContact contact) const;
 
+  const Garment* garment_;
   ContactFeatures features_;
   bool swept_ = true;
   std::vector<Triangle> triangles_;
@@ -82,7 +95,9 @@ private:
   proxies::Candidates candidates_;
   std::vector<int> begin_; ///< of each triangle in pairs_; triangles + 1 entries
   std::vector<Pair> pairs_;
-  std::int64_t searches_ = 0; ///< of `search`, when pairs were last found
+  std::vector<double> body_wakes_; ///< of each triangle: travelled sum at which it may touch the true body, m
+  std::vector<proxies::BodyContact> body_contacts_; ///< room
+  std::int64_t searches_ = 0;                       ///< of `search`, when pairs were last found
   ContactCounts counts_;
 };
 
@@ -94,9 +109,9 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
   const ContactSearch::Way way = search.way();
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& triangle = triangles_[t];
+    const auto& [a, b, c] = triangle;
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
       Pair& pair = pairs_[p];
-      const auto& [a, b, c] = triangle;
       const double travelled =
           std::max({way.particles[a], way.particles[b], way.particles[c]}) + way.colliders[pair.collider];
       if (travelled < pair.wake) continue;
@@ -106,12 +121,40 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
         continue;
       const auto meet = [&](const TriangleContact& contact) {
         on_contact(contact);
-        for (const int i : triangle) search.moved(i, particles.positions[i]);
+        for (const int i : triangle) search.moved(i, x[i]);
         ++counts_.contacts;
       };
       if (const auto contact = swept(triangle, search, pair.collider, particles)) meet(*contact);
       if (const auto contact = found(triangle, search, pair, travelled, particles)) meet(*contact);
     }
+    if (search.colliders().has_body()) meet_body(query, search, t, particles, on_contact);
+  }
+}
+
+template <class OnContact>
+void TriangleContacts::meet_body(proxies::CollisionQuery& query, ContactSearch& search, std::size_t t,
+                                 Particles& particles, const OnContact& on_contact) {
+  const Triangle& triangle = triangles_[t];
+  const auto& [a, b, c] = triangle;
+  const std::vector<Vec3>& x = particles.positions;
+  const ContactSearch::Way way = search.way();
+  const int body = search.colliders().body_index();
+  const double travelled = std::max({way.particles[a], way.particles[b], way.particles[c]}) + way.colliders[body];
+  if (travelled < body_wakes_[t]) return;
+  body_contacts_.clear();
+  const double clear = query.body_contacts({x[a], x[b], x[c]}, {search.offset(), k_body_depth}, body_contacts_);
+  ++counts_.queries;
+  body_wakes_[t] = travelled + clear - k_travel_slack;
+  for (const proxies::BodyContact& pair : body_contacts_) {
+    auto contact = with_levers(triangle, {{}, pair.weights, {}, body, pair, 0.0});
+    if (!contact) continue;
+    // From where those before it left the corners.
+    const double distance = (contact->point(x) - pair.closest).dot(pair.normal);
+    contact->push = bounded_push(*contact, search, distance, x);
+    if (contact->push <= 0.0) continue;
+    on_contact(*contact);
+    for (const int i : triangle) search.moved(i, x[i]);
+    ++counts_.contacts;
   }
 }
 

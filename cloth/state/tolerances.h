@@ -54,6 +54,10 @@ inline constexpr double k_worn_cell = 1.15;
 inline constexpr double k_hasty_speed = 3.0;
 inline constexpr double k_torn_cell = 3.0;
 
+/// m. How deep a feature of the true body may have come through cloth and still be met. Above what one substep of the
+/// dance brings (5 mm), below the thickness of an arm.
+inline constexpr double k_body_depth = 0.02;
+
 /// How many times as far as a contact point itself its corners may be moved to bring it out. A point beside a pinned
 /// corner would throw the free one by any lever. Above what equal masses ask for (1.2), and those of a border (1.9).
 inline constexpr double k_longest_lever = 2.0;

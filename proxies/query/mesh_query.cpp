@@ -39,6 +39,15 @@ public:
     for (std::size_t v = 0; v < now_.size(); ++v)
       now_[v] = (1.0 - s) * start_[v].cast<double>() + s * end_[v].cast<double>();
     body_.pose(now_);
+    has_posed_ = true;
+  }
+
+  double body_contacts(const std::array<Vec3, 3>& cloth, const BodyReach& reach,
+                       std::vector<BodyContact>& out) override {
+    if (!features_) features_.emplace(body_); // of no use to those who ask points only
+    else if (has_posed_) features_->refresh();
+    has_posed_ = false;
+    return features_->contacts(cloth, reach, out);
   }
 
   Contact contact(const Vec3& point, int collider) const override {
@@ -85,8 +94,10 @@ private:
   }
 
   BodyMesh body_;
-  std::vector<Vec3> now_;              // the vertices where the body was placed
-  std::span<const Vec3f> start_, end_; // of the frame
+  std::optional<BodyFeatures> features_; // of body_
+  bool has_posed_ = false;               // body_, since these were refreshed
+  std::vector<Vec3> now_;                // the vertices where the body was placed
+  std::span<const Vec3f> start_, end_;   // of the frame
   std::optional<Plane> ground_;
 };
 
