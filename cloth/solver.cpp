@@ -22,7 +22,10 @@ SolverOptions honoured(SolverOptions options, const Garment& garment, proxies::B
     options.passes = 1;
     options.self_collision = false;
   }
-  if (backend == proxies::Backend::mesh) options.swept = false; // the true body is not
+  if (backend == proxies::Backend::mesh) {
+    if (options.features == ContactFeatures::automatic) options.features = ContactFeatures::particles;
+    options.swept = false;
+  }
   return options;
 }
 

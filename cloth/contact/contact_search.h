@@ -54,18 +54,20 @@ public:
   Vec3 surface_motion(int collider, const Vec3& point) const;
 
   /// For those who go on where particles end (TriangleContacts), in a substep after for_each_contact(): where particles
-  /// and proxies were when it began, and how far each has gone since candidates were found, m. `moved`: a particle has
-  /// been moved since.
+  /// and proxies were when it began, the ways of particles before any contact, and how far each has gone since
+  /// candidates were found, m. `moved`: a particle has been moved since.
   struct Way {
-    std::span<const Vec3> starts;
+    std::span<const Vec3> starts, ways;
     std::span<const proxies::Capsule> before, now;
     std::span<const double> particles, colliders;
   };
-  Way way() const { return {starts_, placed_before_, placed_, particle_travel_, collider_travel_}; }
+  Way way() const { return {starts_, particle_way_, placed_before_, placed_, particle_travel_, collider_travel_}; }
   void moved(int particle, const Vec3& x) {
     particle_travel_[particle] += (x - seen_at_[particle]).norm();
     seen_at_[particle] = x;
   }
+  /// Whether the last push left the particle in the true body, out of which it is worked slowly.
+  bool is_in_body(int particle) const { return in_body_[particle] != 0; }
   double offset() const { return offset_; }
   double margin() const { return margin_; } ///< m a particle may go before candidates are found anew
   const proxies::SweptColliders& colliders() const { return colliders_; }

@@ -129,8 +129,13 @@ std::optional<TriangleContact> TriangleContacts::found(const Triangle& triangle,
 
 double TriangleContacts::bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,
                                       const std::vector<Vec3>& x) const {
-  const double gone = (contact.point(x) - contact.point(search.way().starts)).norm();
-  return std::min(search.offset() - distance, gone + search.substep_way(contact.collider) + search.push_speed_step());
+  const double needed = search.offset() - distance;
+  const double allowed = search.substep_way(contact.collider) + search.push_speed_step();
+  const Vec3 way = contact.point(search.way().ways);
+  if (needed <= way.norm() + allowed) return needed;
+  // It began inside: all contacts together take it out at that speed, and it keeps to it from substep to substep.
+  const Vec3 gone = contact.point(x) - contact.point(search.way().starts);
+  return std::clamp(allowed - std::max(gone.dot(contact.contact.normal), (gone - way).norm()), 0.0, needed);
 }
 
 } // namespace tutu::cloth

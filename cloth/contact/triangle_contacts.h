@@ -44,8 +44,10 @@ void push_out(const TriangleContact& contact, const ContactSearch& search, std::
 /// of a triangle that is so large at this moment, for so thin a proxy, that particles which keep the offset could leave
 /// the proxy in it.
 ///
-/// Against the true body a triangle has one contact for each pair of features that meet (proxies/body/body_features.h),
-/// down to k_body_depth; with `automatic` too. They are not swept.
+/// Against the true body, with `triangles` only, a triangle has one contact for each pair of features that meet
+/// (proxies/body/body_features.h), down to k_body_depth; a triangle waits while a corner is worked out of it. They are
+/// not swept, and pairs come and go with a jump where cloth slides over corners of the body, which kicks it: what is
+/// found is where nothing stands in the body, not yet how cloth moves there. So a reference asks by particles.
 class TriangleContacts {
 public:
   /// The garment must outlive it. Takes no memory before its first frame.
@@ -82,6 +84,7 @@ private:
   template <class OnContact>
   void meet_body(proxies::CollisionQuery& query, ContactSearch& search, std::size_t triangle, Particles& particles,
                  const OnContact& on_contact);
+  /// m. No more than both have moved in the substep, and k_push_out_speed besides.
   double bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,
                       const std::vector<Vec3>& x) const;
   std::optional<TriangleContact> with_levers(const Triangle& triangle, TriangleContact contact) const;
@@ -107,6 +110,7 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
   if (features_ == ContactFeatures::particles) return;
   if (searches_ != search.counts().searches) find_pairs(query, search, particles);
   const ContactSearch::Way way = search.way();
+  const bool asks_body = features_ == ContactFeatures::triangles && search.colliders().has_body();
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& triangle = triangles_[t];
     const auto& [a, b, c] = triangle;
@@ -125,9 +129,10 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
         ++counts_.contacts;
       };
       if (const auto contact = swept(triangle, search, pair.collider, particles)) meet(*contact);
-      if (const auto contact = found(triangle, search, pair, travelled, particles)) meet(*contact);
+      if (const auto contact = found(triangle, search, pair, travelled, particles); contact && contact->push > 0.0)
+        meet(*contact);
     }
-    if (search.colliders().has_body()) meet_body(query, search, t, particles, on_contact);
+    if (asks_body) meet_body(query, search, t, particles, on_contact);
   }
 }
 
@@ -141,6 +146,7 @@ void TriangleContacts::meet_body(proxies::CollisionQuery& query, ContactSearch& 
   const int body = search.colliders().body_index();
   const double travelled = std::max({way.particles[a], way.particles[b], way.particles[c]}) + way.colliders[body];
   if (travelled < body_wakes_[t]) return;
+  if (search.is_in_body(a) || search.is_in_body(b) || search.is_in_body(c)) return; // they come out first
   body_contacts_.clear();
   const double clear = query.body_contacts({x[a], x[b], x[c]}, {search.offset(), k_body_depth}, body_contacts_);
   ++counts_.queries;

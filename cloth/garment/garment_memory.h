@@ -12,8 +12,8 @@ std::uint64_t particles_of(const GarmentDescription& description);
 
 /// Bytes a particle, all told: rest shape with its springs, solver, contact, and what building them takes for a while.
 /// Measured as the peak of the process (tests/cloth/garment/test_garment_memory.cpp does it again).
-inline constexpr double k_bytes_a_woven_particle = 800.0; ///< of grids and tubes: 500 to 600, 730 with self-collision
-inline constexpr double k_bytes_a_mesh_particle = 900.0;  ///< of discs and meshes: 660 to 770, 400 of mass_spring
+inline constexpr double k_bytes_a_woven_particle = 800.0; ///< of grids and tubes: 640 to 780
+inline constexpr double k_bytes_a_mesh_particle = 900.0;  ///< of discs and meshes: 740 to 830, 550 of mass_spring
 /// Bytes a tile of 128 woven particles keeps for each collider that may come near it; about so many a particle of a
 /// mesh that is near to it.
 inline constexpr double k_bytes_a_tile_and_collider = 40.0;

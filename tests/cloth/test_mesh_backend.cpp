@@ -2,6 +2,7 @@
 #include "cloth/detail/solver_parts.h"
 #include "cloth/recovery.h"
 #include "cloth/state/tolerances.h"
+#include "src/study/bench/mesh_sheet.h"
 #include "tests/support/solids.h"
 
 #include <gtest/gtest.h>
@@ -57,6 +58,47 @@ TEST(MeshBackend, EverySolverKeepsEveryParticleOutside) {
     EXPECT_GT(solver->contact_counts().contacts, 1000);
     EXPECT_LT(solver->contact_counts().queries, solver->contact_counts().candidates * input.substeps * 2 / 3);
   }
+}
+
+/// Of 28 points of each triangle the deepest, m.
+double deepest(const Garment& garment, const Solver& solver, const proxies::CollisionQuery& query, int body) {
+  const std::vector<Vec3>& x = solver.particles().positions;
+  double deepest = 0.0;
+  for (const auto& [a, b, c] : garment.triangles)
+    for (int u = 0; u <= 6; ++u)
+      for (int v = 0; u + v <= 6; ++v) {
+        const Vec3 p = (x[a] * u + x[b] * v + x[c] * (6 - u - v)) / 6.0;
+        deepest = std::max(deepest, -query.contact(p, body).distance);
+      }
+  return deepest;
+}
+
+TEST(MeshBackend, EdgesAndFacesKeepABallOutBetweenParticles) {
+  GarmentDescription irregular;
+  irregular.file = "mesh";
+  irregular.shape = app::mesh_sheet(5, {-0.25, 1, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, 0.25);
+  for (const Garment& garment : {sheet(6), build_garment(irregular)}) // cells of 10 cm on a ball of 15
+    for (const SolverKind kind : {SolverKind::xpbd, SolverKind::mass_spring}) {
+      SCOPED_TRACE(std::string(name_of(kind)) + (garment.rows > 0 ? ", grid" : ", mesh"));
+      const auto run = [&](ContactFeatures features) {
+        Ball ball;
+        const auto query = ball.query();
+        const auto solver = make_solver(garment, {.solver = kind, .features = features});
+        FrameInput input;
+        input.substeps = kind == SolverKind::xpbd ? 8 : 24;
+        double worst = 0.0;
+        ball.move_to({0, 0.84, 0});
+        for (int frame = 0; frame < 30; ++frame) {
+          ball.move_to({0.1 * std::sin(0.1 * frame), 0.84, 0});
+          input.colliders = ball.swept(std::nullopt);
+          EXPECT_FALSE(solver->step(input, *query));
+          worst = std::max(worst, deepest(garment, *solver, *query, input.colliders.body_index()));
+        }
+        return worst;
+      };
+      EXPECT_GT(run(ContactFeatures::particles), 0.003);
+      EXPECT_LT(run(ContactFeatures::triangles), 0.0005);
+    }
 }
 
 TEST(MeshBackend, ClothThatBeginsInsideIsWorkedOutNotThrown) {

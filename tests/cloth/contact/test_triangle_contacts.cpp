@@ -52,8 +52,9 @@ public:
       }
   }
 
+  /// `free`: where the particles were before any contact.
   void triangles(std::span<const proxies::Capsule> before, std::span<const proxies::Capsule> now,
-                 const std::vector<Vec3>& starts, double h, std::vector<Vec3>& x) {
+                 const std::vector<Vec3>& starts, const std::vector<Vec3>& free, double h, std::vector<Vec3>& x) {
     for (const auto& [a, b, c] : garment_->triangles) {
       if (pinned_[a] && pinned_[b] && pinned_[c]) continue;
       for (std::size_t k = 0; k < now.size(); ++k) {
@@ -68,9 +69,16 @@ public:
         system << x[a], x[b], x[c], 1.0, 1.0, 1.0;
         const Eigen::Vector3d weights =
             system.colPivHouseholderQr().solve(Eigen::Vector4d(found.cloth.x(), found.cloth.y(), found.cloth.z(), 1.0));
-        const Vec3 start = weights[0] * starts[a] + weights[1] * starts[b] + weights[2] * starts[c];
+        const auto at = [&](const std::vector<Vec3>& of) {
+          return Vec3(weights[0] * of[a] + weights[1] * of[b] + weights[2] * of[c]);
+        };
+        const double allowed = moved(before[k], now[k]) + k_push_out_speed * h;
+        const bool began_inside = needed > (at(free) - at(starts)).norm() + allowed;
         const double push =
-            std::min(needed, (found.cloth - start).norm() + moved(before[k], now[k]) + k_push_out_speed * h);
+            began_inside
+                ? std::max(0.0, std::min(needed, allowed - std::max((found.cloth - at(free)).norm(),
+                                                                    (found.cloth - at(starts)).dot(found.normal))))
+                : needed;
         double sum = 0.0, most = 0.0;
         for (int j = 0; j < 3; ++j) {
           const std::uint32_t i = std::array{a, b, c}[j];
@@ -137,6 +145,7 @@ TEST(TriangleContacts, AreThoseOfASearchOverAllPairs) {
         for (Particles* particles : {&fast, &plain})
           for (int i = 0; i < particles->count(); ++i)
             if (!pinned[i]) particles->positions[i] += h * particles->velocities[i];
+        const std::vector<Vec3> free = plain.positions;
         search.for_each_contact(*query, s, pinned, fast,
                                 [&](int i, int collider, const proxies::Contact& contact, double push) {
                                   search.push_out(fast.positions[i], starts[i], collider, contact, push, {});
@@ -146,7 +155,7 @@ TEST(TriangleContacts, AreThoseOfASearchOverAllPairs) {
         });
         proxies::colliders_at(colliders, s, now);
         twin.particles(before, now, twin_starts, h, plain.positions);
-        twin.triangles(before, now, twin_starts, h, plain.positions);
+        twin.triangles(before, now, twin_starts, free, h, plain.positions);
         before = now;
         if (twin.crossed) break;
         for (int i = 0; i < fast.count(); ++i)

@@ -141,9 +141,11 @@ struct Without {
   int value;
   bool in_springs, on_meshes, against_the_body; ///< refused there
 };
-constexpr Without k_without[] = {{"passes", 2, true, true, false},    {"self_collision", 1, true, true, false},
-                                 {"features", 0, false, false, true}, {"features", 2, false, false, true},
-                                 {"swept", 1, false, false, true},    {"double_precision", 0, true, false, false}};
+constexpr Without k_without[] = {{"passes", 2, true, true, false},
+                                 {"self_collision", 1, true, true, false},
+                                 {"features", 0, false, false, true},
+                                 {"swept", 1, false, false, true},
+                                 {"double_precision", 0, true, false, false}};
 
 TEST(SettingsTable, WhatAGarmentDoesNotHonourIsTold) {
   const std::vector<cloth::Garment> grids = {woven()}, meshes = {meshed()};
