@@ -46,8 +46,8 @@ void push_out(const TriangleContact& contact, const ContactSearch& search, std::
 ///
 /// Against the true body, with `triangles` only, a triangle has one contact for each pair of features that meet
 /// (proxies/body/body_features.h), down to k_body_depth; a triangle waits while a corner is worked out of it. They are
-/// not swept, and pairs come and go with a jump where cloth slides over corners of the body, which kicks it: what is
-/// found is where nothing stands in the body, not yet how cloth moves there. So a reference asks by particles.
+/// not swept. Where cloth slides over sharp corners of a coarse body pairs come with a jump, and kick it. They cost
+/// four times what its particles do, so that references go by these.
 class TriangleContacts {
 public:
   /// The garment must outlive it. Takes no memory before its first frame.
