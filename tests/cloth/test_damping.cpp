@@ -69,7 +69,7 @@ double spin_kept(const Garment& garment, Solver& solver, double w, int substeps)
   return momentum(solver.particles()) / momentum(state);
 }
 
-TEST(Turning, IsNotDamped) {
+TEST(Turning, IsNotDamped_slow) {
   GarmentDescription description;
   description.shape = GridShape{13, 13, Vec3(-0.15, 0.15, 0), Vec3(0.3, 0, 0), Vec3(0, -0.3, 0)};
   description.fabric.drag = 0.0;

@@ -188,7 +188,7 @@ double deepest(const Garment& garment, const std::vector<Vec3>& x, std::span<con
 }
 
 /// A thin limb rises through the middle of a coarse sheet that hangs between two sides.
-TEST(TriangleContacts, KeepALimbOutBetweenParticlesInEverySolver) {
+TEST(TriangleContacts, KeepALimbOutBetweenParticlesInEverySolver_slow) {
   for (const SolverKind solver : {SolverKind::xpbd, SolverKind::mass_spring})
     for (const proxies::Backend backend : {proxies::Backend::hybrid, proxies::Backend::brute, proxies::Backend::fcl})
       for (const bool woven : {false, true}) {
