@@ -46,7 +46,7 @@ void ContactSearch::place(proxies::CollisionQuery& query, double s) {
   query_ = &query;
   if (!colliders_.has_body()) return;
   query.place_body(colliders_, s);
-  collider_travel_[colliders_.body_index()] += since_before_ * body_way_;
+  collider_travel_[colliders_.body_index()] += substep_way(colliders_.body_index());
 }
 
 double ContactSearch::substep_way(int collider) const {

@@ -38,9 +38,10 @@ public:
                    double seconds);
 
   /// Puts the colliders to `s` in (0, 1] of the frame and calls on_contact(particle, collider, contact, push) for every
-  /// free particle nearer to one than the offset, by `push` = offset - distance > 0. Particles rise, and colliders for
-  /// each of them; each contact is found where the ones before it left the particle. on_contact moves it. `pinned` has
-  /// one entry a particle; pinned ones are left alone. `particles` are those of begin_frame, moved on.
+  /// free particle nearer to one than the offset, to be moved by `push`: offset - distance, or what of it is allowed in
+  /// one substep; and for those that went through, with the contact where they touched. Particles rise, and colliders
+  /// for each of them; each contact is found where the ones before it left the particle. on_contact moves it. `pinned`
+  /// has one entry a particle; pinned ones are left alone. `particles` are those of begin_frame, moved on.
   template <class OnContact>
   void for_each_contact(proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
                         Particles& particles, const OnContact& on_contact);

@@ -68,19 +68,18 @@ double TriangleContacts::squared_edge_for(const proxies::Capsule& proxy, double 
   return 4.5 * (kept * kept - radius * radius);
 }
 
-std::optional<TriangleContact> TriangleContacts::with_levers(const Triangle& triangle, TriangleContact contact) const {
+std::optional<TriangleContact> TriangleContacts::with_levers(TriangleContact contact) const {
   double lightness = 0.0; // sum of inverse mass times squared weight
   double most = 0.0;
   for (int k = 0; k < 3; ++k) {
-    const double w = inverse_masses_[triangle[k]] * contact.weights[k];
+    const double w = inverse_masses_[contact.corners[k]] * contact.weights[k];
     contact.levers[k] = w;
     lightness += w * contact.weights[k];
     most = std::max(most, w);
   }
-  if (!(lightness > 0.0)) return std::nullopt; // at a pinned corner, or between two
+  if (!(lightness > 0.0)) return std::nullopt;
   lightness = std::max(lightness, most / k_longest_lever);
   for (double& lever : contact.levers) lever /= lightness;
-  contact.corners = triangle;
   return contact;
 }
 
@@ -99,7 +98,7 @@ std::optional<TriangleContact> TriangleContacts::swept(const Triangle& triangle,
     return std::nullopt;
   const auto contact = swept_contact(from, to, search.swept_way(proxy));
   if (!contact) return std::nullopt;
-  return with_levers(triangle, {{}, contact->weights, {}, proxy, contact->touch, contact->passed});
+  return with_levers({triangle, contact->weights, {}, proxy, contact->touch, contact->passed});
 }
 
 std::optional<TriangleContact> TriangleContacts::found(const Triangle& triangle, const ContactSearch& search,
@@ -115,16 +114,14 @@ std::optional<TriangleContact> TriangleContacts::found(const Triangle& triangle,
     pair.wake = travelled + (contact.distance - search.offset()) - k_travel_slack;
     return std::nullopt;
   }
-  const auto at = [&](std::span<const Vec3> corners) {
-    return Vec3(contact.weights[0] * corners[a] + contact.weights[1] * corners[b] + contact.weights[2] * corners[c]);
-  };
   if (contact.feature == proxies::ClothFeature::crossing) { // back to where it was when the substep began
     const proxies::Capsule& before = way.before[pair.collider];
-    contact = ask(at(way.starts) - (before.a + contact.on_axis * (before.b - before.a)));
+    const TriangleContact crossed{triangle, contact.weights, {}, pair.collider, contact, 0.0};
+    contact = ask(crossed.point(way.starts) - (before.a + contact.on_axis * (before.b - before.a)));
   }
-  auto met = with_levers(triangle, {{}, contact.weights, {}, pair.collider, contact, 0.0});
+  auto met = with_levers({triangle, contact.weights, {}, pair.collider, contact, 0.0});
   if (met) met->push = bounded_push(*met, search, contact.distance, x);
-  return met;
+  return met && met->push > 0.0 ? met : std::nullopt;
 }
 
 double TriangleContacts::bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,

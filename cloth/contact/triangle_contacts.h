@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace tutu::cloth {
@@ -78,16 +79,20 @@ private:
   double squared_edge_for(const proxies::Capsule& proxy, double offset) const; ///< of Pair
   std::optional<TriangleContact> swept(const Triangle& triangle, const ContactSearch& search, int proxy,
                                        const Particles& particles) const;
-  /// Nothing where the two are clear of each other; the pair then knows for how long.
+  /// Nothing where the two are clear of each other (the pair then knows for how long), or all is moved that may be.
   std::optional<TriangleContact> found(const Triangle& triangle, const ContactSearch& search, Pair& pair,
                                        double travelled, const Particles& particles);
+  template <class OnContact>
+  void meet(const TriangleContact& contact, ContactSearch& search, const Particles& particles,
+            const OnContact& on_contact);
   template <class OnContact>
   void meet_body(proxies::CollisionQuery& query, ContactSearch& search, std::size_t triangle, Particles& particles,
                  const OnContact& on_contact);
   /// m. No more than both have moved in the substep, and k_push_out_speed besides.
   double bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,
                       const std::vector<Vec3>& x) const;
-  std::optional<TriangleContact> with_levers(const Triangle& triangle, TriangleContact contact) const;
+  /// Nothing at a pinned corner, or between two.
+  std::optional<TriangleContact> with_levers(TriangleContact contact) const;
 
   const Garment* garment_;
   ContactFeatures features_;
@@ -123,17 +128,21 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
       if (std::max({(x[b] - x[a]).squaredNorm(), (x[c] - x[b]).squaredNorm(), (x[a] - x[c]).squaredNorm()}) <=
           pair.squared_edge)
         continue;
-      const auto meet = [&](const TriangleContact& contact) {
-        on_contact(contact);
-        for (const int i : triangle) search.moved(i, x[i]);
-        ++counts_.contacts;
-      };
-      if (const auto contact = swept(triangle, search, pair.collider, particles)) meet(*contact);
-      if (const auto contact = found(triangle, search, pair, travelled, particles); contact && contact->push > 0.0)
-        meet(*contact);
+      if (const auto contact = swept(triangle, search, pair.collider, particles))
+        meet(*contact, search, particles, on_contact);
+      if (const auto contact = found(triangle, search, pair, travelled, particles))
+        meet(*contact, search, particles, on_contact);
     }
     if (asks_body) meet_body(query, search, t, particles, on_contact);
   }
+}
+
+template <class OnContact>
+void TriangleContacts::meet(const TriangleContact& contact, ContactSearch& search, const Particles& particles,
+                            const OnContact& on_contact) {
+  on_contact(contact);
+  for (const int i : contact.corners) search.moved(i, particles.positions[i]);
+  ++counts_.contacts;
 }
 
 template <class OnContact>
@@ -152,15 +161,12 @@ void TriangleContacts::meet_body(proxies::CollisionQuery& query, ContactSearch& 
   ++counts_.queries;
   body_wakes_[t] = travelled + clear - k_travel_slack;
   for (const proxies::BodyContact& pair : body_contacts_) {
-    auto contact = with_levers(triangle, {{}, pair.weights, {}, body, pair, 0.0});
+    auto contact = with_levers({triangle, pair.weights, {}, body, pair, 0.0});
     if (!contact) continue;
     // From where those before it left the corners.
     const double distance = (contact->point(x) - pair.closest).dot(pair.normal);
     contact->push = bounded_push(*contact, search, distance, x);
-    if (contact->push <= 0.0) continue;
-    on_contact(*contact);
-    for (const int i : triangle) search.moved(i, x[i]);
-    ++counts_.contacts;
+    if (contact->push > 0.0) meet(*contact, search, particles, on_contact);
   }
 }
 

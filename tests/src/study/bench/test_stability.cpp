@@ -43,7 +43,7 @@ TEST_P(ThinLeg, NothingPasses_slow) {
       EXPECT_TRUE(run.failure.empty()) << run.failure;
     }
 }
-INSTANTIATE_TEST_SUITE_P(Stability, ThinLeg, ::testing::Values(1, 3, 7, 10, 14, 20, 30));
+INSTANTIATE_TEST_SUITE_P(Stability, ThinLeg, ::testing::Values(1, 3, 5, 7, 10, 14, 20, 30));
 
 TEST(Stability, AdaptiveSubstepsAreWhatStopsAFastLeg_slow) {
   RunSettings setup;
