@@ -44,19 +44,22 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
   times_ = {};
   if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
-  contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
+  contacts_.begin_frame(query, input.colliders, particles_, input.seconds, input.contacts);
   triangle_contacts_.begin_frame(query, contacts_, particles_);
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto stop_at_surface = [this](int i, int, const proxies::Contact& contact, double push) {
-    particles_.positions[i] += push * contact.normal;
-    Vec3& v = particles_.velocities[i];
-    v -= v.dot(contact.normal) * contact.normal;
+    const Response response{push * contact.normal, -particles_.velocities[i].dot(contact.normal) * contact.normal};
+    particles_.positions[i] += response.moved;
+    particles_.velocities[i] += response.velocity;
+    return response;
   };
-  const auto stop_triangle = [this](const TriangleContact& contact) {
+  const auto stop_triangle = [this](const ClothContact& contact) {
     const Vec3& n = contact.contact.normal;
-    contact.move(particles_.positions, contact.push * n);
-    contact.move(particles_.velocities, -contact.point(particles_.velocities).dot(n) * n);
+    const Response response{contact.push * n, -contact.point(particles_.velocities).dot(n) * n};
+    contact.move(particles_.positions, response.moved);
+    contact.move(particles_.velocities, response.velocity);
+    return response;
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};

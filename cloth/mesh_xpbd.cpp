@@ -152,15 +152,17 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
   times_ = {};
   if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
-  contacts_.begin_frame(query, input.colliders, particles_, input.seconds);
+  contacts_.begin_frame(query, input.colliders, particles_, input.seconds, input.contacts);
   triangle_contacts_.begin_frame(query, contacts_, particles_);
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto rub = [&](int i, int collider, const proxies::Contact& contact, double push) {
-    contacts_.push_out(particles_.positions[i], before_[i], collider, contact, push, input.friction);
+    const Vec3 moved = contacts_.push_out(particles_.positions[i], before_[i], collider, contact, push, input.friction);
+    return Response{moved, moved / h};
   };
-  const auto rub_triangle = [&](const TriangleContact& contact) {
-    push_out(contact, contacts_, before_, input.friction, particles_.positions);
+  const auto rub_triangle = [&](const ClothContact& contact) {
+    const Vec3 moved = push_out(contact, contacts_, before_, input.friction, particles_.positions);
+    return Response{moved, moved / h};
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
     if (input.is_stopped()) return Stopped{substep};

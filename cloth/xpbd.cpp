@@ -71,7 +71,7 @@ private:
   void close_seams();
   void slow_down(const FrameInput& input, double s, double h);
   bool part_layers(double h);
-  void ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s);
+  void ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s, double h);
   /// A substep: its number, its end in (0, 1] of the frame, and what the kernel is told of it.
   struct Substep {
     int number = 0;
@@ -133,17 +133,19 @@ template <class T> bool Xpbd<T>::part_layers(double h) {
 
 /// Each particle by way of the query, and what lies between them, in double: the plain form of contact, for the
 /// backends that have no other.
-template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s) {
+template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s, double h) {
   sheet_.get_positions(particles_.positions);
-  search_.for_each_contact(query, s, pinned_, particles_,
-                           [&](int i, int collider, const proxies::Contact& contact, double push) {
-                             Vec3& x = particles_.positions[i];
-                             search_.push_out(x, sheet_.start_position(i), collider, contact, push, input.friction);
-                             sheet_.move_to(i, x);
-                           });
-  triangle_search_.for_each_contact(query, search_, particles_, [&](const TriangleContact& contact) {
-    push_out(contact, search_, search_.way().starts, input.friction, particles_.positions);
-    for (const int i : contact.corners) sheet_.move_to(i, particles_.positions[i]);
+  search_.for_each_contact(
+      query, s, pinned_, particles_, [&](int i, int collider, const proxies::Contact& contact, double push) {
+        Vec3& x = particles_.positions[i];
+        const Vec3 moved = search_.push_out(x, sheet_.start_position(i), collider, contact, push, input.friction);
+        sheet_.move_to(i, x);
+        return Response{moved, moved / h};
+      });
+  triangle_search_.for_each_contact(query, search_, particles_, [&](const ClothContact& contact) {
+    const Vec3 moved = push_out(contact, search_, search_.way().starts, input.friction, particles_.positions);
+    for (const int i : contact.particles) sheet_.move_to(i, particles_.positions[i]);
+    return Response{moved, moved / h};
   });
 }
 
@@ -200,7 +202,7 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
   asks_each_ = !query.leaves_contacts();
   sheet_.follow();
   if (asks_each_) {
-    search_.begin_frame(query, input.colliders, particles(), input.seconds);
+    search_.begin_frame(query, input.colliders, particles(), input.seconds, input.contacts);
     triangle_search_.begin_frame(query, search_, particles());
   } else {
     contacts_.begin_frame(query, input, sheet_);
@@ -235,7 +237,7 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
     if (asks_each_) {
       sheet_.get_positions(particles_.positions);
       if (!is_in_world(particles_)) return diverged(input, at);
-      ask_each(query, input, s);
+      ask_each(query, input, s, h);
     } else if (!contacts_.resolve(query, kernel_, sheet_, s, h)) {
       return diverged(input, at);
     }

@@ -8,8 +8,10 @@
 namespace tutu::cloth {
 
 void ContactSearch::begin_frame(proxies::CollisionQuery& query, const proxies::SweptColliders& colliders,
-                                const Particles& particles, double seconds) {
+                                const Particles& particles, double seconds, ContactSet* kept) {
   colliders_ = colliders;
+  kept_ = kept;
+  if (kept_) kept_->begin_step();
   double fastest = 0.0; // squared m/s
   for (const Vec3& v : particles.velocities) fastest = std::max(fastest, v.squaredNorm());
   margin_ = k_least_margin + k_margin_growth * std::sqrt(fastest) * seconds;
@@ -36,6 +38,7 @@ void ContactSearch::find_candidates(proxies::CollisionQuery& query, const Partic
 }
 
 void ContactSearch::place(proxies::CollisionQuery& query, double s) {
+  if (kept_) kept_->begin_substep();
   placed_before_.swap(placed_);
   since_before_ = s - placed_at_;
   placed_at_ = s;
@@ -43,10 +46,42 @@ void ContactSearch::place(proxies::CollisionQuery& query, double s) {
   proxies::colliders_at(colliders_, s, placed_);
   query.place(placed_, colliders_.ground);
   for (std::size_t c = 0; c < placed_.size(); ++c) collider_travel_[c] += substep_way(static_cast<int>(c));
-  query_ = &query;
   if (!colliders_.has_body()) return;
-  query.place_body(colliders_, s);
+  body_ = query.body();
+  body_->place(s);
   collider_travel_[colliders_.body_index()] += substep_way(colliders_.body_index());
+}
+
+proxies::MeshContact ContactSearch::ask(const proxies::CollisionQuery& query, const Vec3& point, int collider) const {
+  if (collider == colliders_.body_index()) return body_->contact(point);
+  return {query.contact(point, collider), -1};
+}
+
+void ContactSearch::keep_particle(int particle, int collider, const proxies::MeshContact& contact, double push,
+                                  const Response& response, std::optional<double> swept_at) const {
+  ClothContact kept;
+  kept.particles[0] = particle;
+  kept.weights[0] = kept.levers[0] = 1.0;
+  kept.collider = collider;
+  kept.contact = contact;
+  kept.push = push;
+  if (swept_at) {
+    kept.cause = ContactCause::sweep;
+    kept.time = *swept_at;
+  }
+  if (collider == colliders_.body_index()) set_on_body(kept, contact);
+  keep(kept, response);
+}
+
+void ContactSearch::keep(ClothContact contact, const Response& response) const {
+  if (!kept_) return;
+  contact.moved = response.moved;
+  contact.velocity = response.velocity;
+  if (contact.collider == colliders_.ground_index()) contact.on = ColliderFeature::ground;
+  else if (contact.collider < colliders_.ground_index()) // placed where it was met
+    set_on_proxy(contact,
+                 proxies::capsule_at(placed_before_[contact.collider], placed_[contact.collider], contact.time));
+  kept_->add(contact);
 }
 
 double ContactSearch::substep_way(int collider) const {
@@ -94,15 +129,17 @@ void ContactSearch::account_travel(proxies::CollisionQuery& query, const Particl
   }
 }
 
-void ContactSearch::push_out(Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact, double push,
+Vec3 ContactSearch::push_out(Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact, double push,
                              std::span<const double> friction) const {
+  const Vec3 from = x;
   x += push * contact.normal;
-  if (friction.empty()) return;
-  x = rubbed(x, x - start - surface_motion(collider, x), contact.normal, friction[collider] * push);
+  if (!friction.empty())
+    x = rubbed(x, x - start - surface_motion(collider, x), contact.normal, friction[collider] * push);
+  return x - from;
 }
 
 Vec3 ContactSearch::surface_motion(int collider, const Vec3& point) const {
-  if (collider == colliders_.body_index()) return since_before_ * query_->body_way(point);
+  if (collider == colliders_.body_index()) return since_before_ * body_->way(point);
   if (collider == colliders_.ground_index()) return Vec3::Zero();
   return proxies::surface_motion(placed_before_[collider], placed_[collider], swept_way(collider).spin, point);
 }

@@ -1,6 +1,7 @@
 // Which particles meet which colliders, substep by substep; what they do then is the solver's business.
 #pragma once
 
+#include "cloth/contact/contact_set.h"
 #include "cloth/contact/swept_contact.h"
 #include "cloth/garment/garment.h"
 #include "cloth/state/frame.h"
@@ -33,22 +34,24 @@ public:
   /// `offset`: what particles keep from every surface, m >= 0 (Fabric::contact_offset).
   explicit ContactSearch(double offset, bool swept = false) : offset_(offset), swept_(swept) {}
 
-  /// Broad phase for a frame of `seconds`. The spans must live until the next call.
+  /// Broad phase for a frame of `seconds`. The spans must live until the next call. `kept`, where there is one, gets
+  /// every contact.
   void begin_frame(proxies::CollisionQuery& query, const proxies::SweptColliders& colliders, const Particles& particles,
-                   double seconds);
+                   double seconds, ContactSet* kept = nullptr);
 
   /// Puts the colliders to `s` in (0, 1] of the frame and calls on_contact(particle, collider, contact, push) for every
   /// free particle nearer to one than the offset, to be moved by `push`: offset - distance, or what of it is allowed in
   /// one substep; and for those that went through, with the contact where they touched. Particles rise, and colliders
-  /// for each of them; each contact is found where the ones before it left the particle. on_contact moves it. `pinned`
-  /// has one entry a particle; pinned ones are left alone. `particles` are those of begin_frame, moved on.
+  /// for each of them; each contact is found where the ones before it left the particle. on_contact moves it, and
+  /// returns its Response. `pinned` has one entry a particle; pinned ones are left alone. `particles` are those of
+  /// begin_frame, moved on.
   template <class OnContact>
   void for_each_contact(proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
                         Particles& particles, const OnContact& on_contact);
 
   /// Takes `x`, which began the substep at `start`, out of a collider by `push` along the contact's normal, and back by
-  /// what rubs. `friction`: of each collider; empty where none rubs.
-  void push_out(Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact, double push,
+  /// what rubs. `friction`: of each collider; empty where none rubs. Returns the way.
+  Vec3 push_out(Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact, double push,
                 std::span<const double> friction) const;
 
   /// How far the collider's surface has moved since the last substep where it is nearest to `point`, m.
@@ -69,6 +72,8 @@ public:
   }
   /// Whether the last push left the particle in the true body, out of which it is worked slowly.
   bool is_in_body(int particle) const { return in_body_[particle] != 0; }
+  /// Keeps a contact where somebody watches. It is whole but for its Response, and what a collider's index tells of it.
+  void keep(ClothContact contact, const Response& response) const;
   double offset() const { return offset_; }
   double margin() const { return margin_; } ///< m a particle may go before candidates are found anew
   const proxies::SweptColliders& colliders() const { return colliders_; }
@@ -81,6 +86,9 @@ public:
   BroadPhaseView broad_phase() const { return {{}, candidates_.begin, candidates_.colliders}; }
 
 private:
+  proxies::MeshContact ask(const proxies::CollisionQuery& query, const Vec3& point, int collider) const;
+  void keep_particle(int particle, int collider, const proxies::MeshContact& contact, double push,
+                     const Response& response, std::optional<double> swept_at) const;
   void find_candidates(proxies::CollisionQuery& query, const Particles& particles);
   void place(proxies::CollisionQuery& query, double s);
   void account_travel(proxies::CollisionQuery& query, const Particles& particles);
@@ -98,9 +106,10 @@ private:
   std::vector<double> particle_travel_, collider_travel_; ///< m since the candidates were found
   std::vector<Vec3> seen_at_;                             ///< where each particle was when it last reported its travel
   std::vector<Vec3> starts_, particle_way_;               ///< of this substep: its start, and the way since, m
-  std::vector<std::uint8_t> in_body_;              ///< whether the last push left a particle inside the true body
-  double body_way_ = 0.0, seconds_ = 0.0;          ///< m that the true body's fastest vertex goes in the frame
-  const proxies::CollisionQuery* query_ = nullptr; ///< that colliders were last placed in
+  std::vector<std::uint8_t> in_body_;     ///< whether the last push left a particle inside the true body
+  double body_way_ = 0.0, seconds_ = 0.0; ///< m that the true body's fastest vertex goes in the frame
+  proxies::MovingBody* body_ = nullptr;   ///< the query's, where colliders were last placed with one
+  ContactSet* kept_ = nullptr;            ///< of who watches
   ContactCounts counts_;
 };
 
@@ -111,25 +120,30 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
   account_travel(query, particles);
   for (int i = 0; i < particles.count(); ++i) {
     if (pinned[i]) continue;
+    const Vec3& x = particles.positions[i];
+    const auto meet = [&](int collider, const proxies::MeshContact& contact, double push,
+                          std::optional<double> swept_at = std::nullopt) {
+      const Response response = on_contact(i, collider, contact, push);
+      if (kept_) keep_particle(i, collider, contact, push, response, swept_at);
+      ++counts_.contacts;
+    };
     for (int pair = candidates_.begin[i]; pair < candidates_.begin[i + 1]; ++pair) {
       const int collider = candidates_.colliders[pair];
       const double travelled = particle_travel_[i] + collider_travel_[collider];
       if (travelled < wake_[pair]) continue;
-      if (const auto gone_through = swept(i, collider, particles.positions[i])) {
-        on_contact(i, collider, gone_through->touch, gone_through->passed);
-        moved(i, particles.positions[i]);
-        ++counts_.contacts;
+      if (const auto gone_through = swept(i, collider, x)) {
+        meet(collider, {gone_through->touch}, gone_through->passed, gone_through->time);
+        moved(i, x);
       }
-      const proxies::Contact contact = query.contact(particles.positions[i], collider);
+      const proxies::MeshContact contact = ask(query, x, collider);
       ++counts_.queries;
       if (contact.distance >= offset_) {
         wake_[pair] = travelled + (contact.distance - offset_) - k_travel_slack;
         if (collider == colliders_.body_index()) in_body_[i] = 0;
         continue;
       }
-      on_contact(i, collider, contact, bounded_push(i, collider, particles.positions[i], contact));
-      moved(i, particles.positions[i]);
-      ++counts_.contacts;
+      meet(collider, contact, bounded_push(i, collider, x, contact));
+      moved(i, x);
     }
     if (particle_travel_[i] <= margin_) continue;
     // Pushed out of reach of what was looked for: ask the others too, this once. The next substep searches anew.
@@ -138,11 +152,9 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
       if (collider == colliders_.ground_index() && !colliders_.ground) continue;
       if (collider == colliders_.body_index() && !colliders_.has_body()) continue;
       if (std::binary_search(asked.begin(), asked.end(), collider)) continue;
-      const proxies::Contact contact = query.contact(particles.positions[i], collider);
+      const proxies::MeshContact contact = ask(query, x, collider);
       ++counts_.queries;
-      if (contact.distance >= offset_) continue;
-      on_contact(i, collider, contact, bounded_push(i, collider, particles.positions[i], contact));
-      ++counts_.contacts;
+      if (contact.distance < offset_) meet(collider, contact, bounded_push(i, collider, x, contact));
     }
   }
 }

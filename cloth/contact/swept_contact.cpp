@@ -31,7 +31,8 @@ std::optional<SweptContact> if_passed(const SweptContact& contact) {
 std::optional<SweptContact> swept_contact(const Vec3& from, const Vec3& to, const SweptCollider& collider) {
   const auto impact = proxies::time_of_impact(from, to, collider.start, collider.end, collider.offset);
   if (!impact || is_inside(impact->contact, collider.offset)) return std::nullopt;
-  return if_passed({impact->contact, {1.0, 0.0, 0.0}, passed_by(collider, impact->time, impact->contact, to)});
+  return if_passed(
+      {impact->contact, {1.0, 0.0, 0.0}, passed_by(collider, impact->time, impact->contact, to), impact->time});
 }
 
 std::optional<SweptContact> swept_contact(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to,
@@ -42,7 +43,7 @@ std::optional<SweptContact> swept_contact(const std::array<Vec3, 3>& from, const
     return std::nullopt;
   const std::array<double, 3>& weights = impact->contact.weights;
   const Vec3 now = weights[0] * to[0] + weights[1] * to[1] + weights[2] * to[2];
-  return if_passed({impact->contact, weights, passed_by(collider, impact->time, impact->contact, now)});
+  return if_passed({impact->contact, weights, passed_by(collider, impact->time, impact->contact, now), impact->time});
 }
 
 } // namespace tutu::cloth

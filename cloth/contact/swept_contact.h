@@ -24,6 +24,7 @@ struct SweptContact {
   proxies::Contact touch; ///< with cloth and collider where they were when they touched
   std::array<double, 3> weights = {1.0, 0.0, 0.0};
   double passed = 0.0;
+  double time = 0.0; ///< of the touch, in [0, 1] of the substep
 };
 
 /// Nothing for what did not touch, for what began the substep inside (it is worked out slowly), and for what the

@@ -8,12 +8,13 @@
 
 namespace tutu::cloth {
 
-void push_out(const TriangleContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
+Vec3 push_out(const ClothContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
               std::span<const double> friction, std::vector<Vec3>& x) {
-  const Vec3 from = contact.point(x);
-  Vec3 to = from;
-  search.push_out(to, contact.point(starts), contact.collider, contact.contact, contact.push, friction);
-  contact.move(x, to - from);
+  Vec3 to = contact.point(x);
+  const Vec3 way =
+      search.push_out(to, contact.point(starts), contact.collider, contact.contact, contact.push, friction);
+  contact.move(x, way);
+  return way;
 }
 
 void TriangleContacts::list_triangles() {
@@ -68,11 +69,11 @@ double TriangleContacts::squared_edge_for(const proxies::Capsule& proxy, double 
   return 4.5 * (kept * kept - radius * radius);
 }
 
-std::optional<TriangleContact> TriangleContacts::with_levers(TriangleContact contact) const {
+std::optional<ClothContact> TriangleContacts::with_levers(ClothContact contact) const {
   double lightness = 0.0; // sum of inverse mass times squared weight
   double most = 0.0;
   for (int k = 0; k < 3; ++k) {
-    const double w = inverse_masses_[contact.corners[k]] * contact.weights[k];
+    const double w = inverse_masses_[contact.particles[k]] * contact.weights[k];
     contact.levers[k] = w;
     lightness += w * contact.weights[k];
     most = std::max(most, w);
@@ -83,8 +84,8 @@ std::optional<TriangleContact> TriangleContacts::with_levers(TriangleContact con
   return contact;
 }
 
-std::optional<TriangleContact> TriangleContacts::swept(const Triangle& triangle, const ContactSearch& search, int proxy,
-                                                       const Particles& particles) const {
+std::optional<ClothContact> TriangleContacts::swept(const Triangle& triangle, const ContactSearch& search, int proxy,
+                                                    const Particles& particles) const {
   if (!swept_) return std::nullopt;
   const ContactSearch::Way way = search.way();
   std::array<Vec3, 3> from, to;
@@ -98,11 +99,12 @@ std::optional<TriangleContact> TriangleContacts::swept(const Triangle& triangle,
     return std::nullopt;
   const auto contact = swept_contact(from, to, search.swept_way(proxy));
   if (!contact) return std::nullopt;
-  return with_levers({triangle, contact->weights, {}, proxy, contact->touch, contact->passed});
+  return with_levers(
+      {triangle, contact->weights, {}, proxy, contact->touch, contact->passed, ContactCause::sweep, contact->time});
 }
 
-std::optional<TriangleContact> TriangleContacts::found(const Triangle& triangle, const ContactSearch& search,
-                                                       Pair& pair, double travelled, const Particles& particles) {
+std::optional<ClothContact> TriangleContacts::found(const Triangle& triangle, const ContactSearch& search, Pair& pair,
+                                                    double travelled, const Particles& particles) {
   const ContactSearch::Way way = search.way();
   const auto& [a, b, c] = triangle;
   const std::vector<Vec3>& x = particles.positions;
@@ -116,17 +118,17 @@ std::optional<TriangleContact> TriangleContacts::found(const Triangle& triangle,
   }
   if (contact.feature == proxies::ClothFeature::crossing) { // back to where it was when the substep began
     const proxies::Capsule& before = way.before[pair.collider];
-    const TriangleContact crossed{triangle, contact.weights, {}, pair.collider, contact, 0.0};
+    const ClothContact crossed{triangle, contact.weights, {}, pair.collider, contact};
     contact = ask(crossed.point(way.starts) - (before.a + contact.on_axis * (before.b - before.a)));
   }
-  auto met = with_levers({triangle, contact.weights, {}, pair.collider, contact, 0.0});
-  if (met) met->push = bounded_push(*met, search, contact.distance, x);
+  auto met = with_levers({triangle, contact.weights, {}, pair.collider, contact});
+  if (met) met->push = bounded_push(*met, search, x);
   return met && met->push > 0.0 ? met : std::nullopt;
 }
 
-double TriangleContacts::bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,
+double TriangleContacts::bounded_push(const ClothContact& contact, const ContactSearch& search,
                                       const std::vector<Vec3>& x) const {
-  const double needed = search.offset() - distance;
+  const double needed = search.offset() - contact.contact.distance;
   const double allowed = search.substep_way(contact.collider) + search.push_speed_step();
   const Vec3 way = contact.point(search.way().ways);
   if (needed <= way.norm() + allowed) return needed;

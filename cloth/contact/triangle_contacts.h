@@ -13,27 +13,9 @@
 
 namespace tutu::cloth {
 
-/// A point of a triangle that is nearer to a collider than the cloth keeps.
-struct TriangleContact {
-  std::array<int, 3> corners = {};
-  std::array<double, 3> weights = {}; ///< of the point
-  std::array<double, 3> levers = {};  ///< corner k moves by levers[k] * what the point has to; 0 for pinned corners
-  int collider = 0;
-  proxies::Contact contact;
-  double push = 0.0; ///< m, > 0, along the contact's normal
-
-  Vec3 point(std::span<const Vec3> x) const {
-    return weights[0] * x[corners[0]] + weights[1] * x[corners[1]] + weights[2] * x[corners[2]];
-  }
-  /// Moves the corners so that the point moves by `way` (or less, where levers are bounded).
-  void move(std::vector<Vec3>& x, const Vec3& way) const {
-    for (int k = 0; k < 3; ++k) x[corners[k]] += levers[k] * way;
-  }
-};
-
 /// Takes the point, which began the substep where `starts` says, out along the normal, and back by what rubs, as
-/// ContactSearch::push_out() does a particle.
-void push_out(const TriangleContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
+/// ContactSearch::push_out() does a particle. Returns the way.
+Vec3 push_out(const ClothContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
               std::span<const double> friction, std::vector<Vec3>& x);
 
 /// The triangles of one garment against the proxies of a scene, or its true body, after its particles have met them
@@ -59,7 +41,8 @@ public:
   void begin_frame(proxies::CollisionQuery& query, const ContactSearch& search, const Particles& particles);
 
   /// In a substep, after search.for_each_contact() and with the same particles: calls
-  /// on_contact(TriangleContact) for each contact, found where those before it left the corners; on_contact moves them.
+  /// on_contact(ClothContact) for each contact, found where those before it left the corners; on_contact moves them,
+  /// and returns the Response of the point.
   template <class OnContact>
   void for_each_contact(proxies::CollisionQuery& query, ContactSearch& search, Particles& particles,
                         const OnContact& on_contact);
@@ -77,22 +60,21 @@ private:
   void list_triangles();
   void find_pairs(proxies::CollisionQuery& query, const ContactSearch& search, const Particles& particles);
   double squared_edge_for(const proxies::Capsule& proxy, double offset) const; ///< of Pair
-  std::optional<TriangleContact> swept(const Triangle& triangle, const ContactSearch& search, int proxy,
-                                       const Particles& particles) const;
+  std::optional<ClothContact> swept(const Triangle& triangle, const ContactSearch& search, int proxy,
+                                    const Particles& particles) const;
   /// Nothing where the two are clear of each other (the pair then knows for how long), or all is moved that may be.
-  std::optional<TriangleContact> found(const Triangle& triangle, const ContactSearch& search, Pair& pair,
-                                       double travelled, const Particles& particles);
+  std::optional<ClothContact> found(const Triangle& triangle, const ContactSearch& search, Pair& pair, double travelled,
+                                    const Particles& particles);
   template <class OnContact>
-  void meet(const TriangleContact& contact, ContactSearch& search, const Particles& particles,
+  void meet(const ClothContact& contact, ContactSearch& search, const Particles& particles,
             const OnContact& on_contact);
   template <class OnContact>
   void meet_body(proxies::CollisionQuery& query, ContactSearch& search, std::size_t triangle, Particles& particles,
                  const OnContact& on_contact);
   /// m. No more than both have moved in the substep, and k_push_out_speed besides.
-  double bounded_push(const TriangleContact& contact, const ContactSearch& search, double distance,
-                      const std::vector<Vec3>& x) const;
+  double bounded_push(const ClothContact& contact, const ContactSearch& search, const std::vector<Vec3>& x) const;
   /// Nothing at a pinned corner, or between two.
-  std::optional<TriangleContact> with_levers(TriangleContact contact) const;
+  std::optional<ClothContact> with_levers(ClothContact contact) const;
 
   const Garment* garment_;
   ContactFeatures features_;
@@ -138,10 +120,10 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
 }
 
 template <class OnContact>
-void TriangleContacts::meet(const TriangleContact& contact, ContactSearch& search, const Particles& particles,
+void TriangleContacts::meet(const ClothContact& contact, ContactSearch& search, const Particles& particles,
                             const OnContact& on_contact) {
-  on_contact(contact);
-  for (const int i : contact.corners) search.moved(i, particles.positions[i]);
+  search.keep(contact, on_contact(contact));
+  for (const int i : contact.particles) search.moved(i, particles.positions[i]);
   ++counts_.contacts;
 }
 
@@ -157,15 +139,16 @@ void TriangleContacts::meet_body(proxies::CollisionQuery& query, ContactSearch& 
   if (travelled < body_wakes_[t]) return;
   if (search.is_in_body(a) || search.is_in_body(b) || search.is_in_body(c)) return; // they come out first
   body_contacts_.clear();
-  const double clear = query.body_contacts({x[a], x[b], x[c]}, {search.offset(), k_body_depth}, body_contacts_);
+  const double clear = query.body()->contacts({x[a], x[b], x[c]}, {search.offset(), k_body_depth}, body_contacts_);
   ++counts_.queries;
   body_wakes_[t] = travelled + clear - k_travel_slack;
   for (const proxies::BodyContact& pair : body_contacts_) {
-    auto contact = with_levers({triangle, pair.weights, {}, body, pair, 0.0});
+    auto contact = with_levers({triangle, pair.weights, {}, body, pair});
     if (!contact) continue;
+    set_on_body(*contact, pair);
     // From where those before it left the corners.
-    const double distance = (contact->point(x) - pair.closest).dot(pair.normal);
-    contact->push = bounded_push(*contact, search, distance, x);
+    contact->contact.distance = (contact->point(x) - pair.closest).dot(pair.normal);
+    contact->push = bounded_push(*contact, search, x);
     if (contact->push > 0.0) meet(*contact, search, particles, on_contact);
   }
 }

@@ -10,6 +10,8 @@
 
 namespace tutu::cloth {
 
+class ContactSet;
+
 /// Everything outside the garment during one frame.
 struct FrameInput {
   proxies::SweptColliders colliders;
@@ -24,6 +26,8 @@ struct FrameInput {
   /// Where there is one, solvers look at it between substeps, and once it is true end the frame there (Stopped). Not
   /// owned; any thread may set it.
   const std::atomic<bool>* stop = nullptr;
+  /// Where there is one, solvers keep in it what they do at colliders. Not owned; of this garment alone.
+  ContactSet* contacts = nullptr;
 
   Vec3 wind_at(double s) const { return (1.0 - s) * wind_start + s * wind_end; } ///< at `s` in [0, 1] of the frame
   bool is_stopped() const { return stop && stop->load(std::memory_order_relaxed); }

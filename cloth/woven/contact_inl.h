@@ -23,14 +23,80 @@ template <class T> constexpr T k_no_direction = sizeof(T) == sizeof(float) ? T(1
 /// What a contact moves a point of the cloth by: out of the collider along the normal n, and back along what it slipped
 /// over the moving surface, by at most friction * push (Coulomb's law on positions). `slip`: the point's way in this
 /// substep less that of the surface under it. `is_hit` lanes only; 0 in the others.
+template <class T> struct Pushed {
+  Wide3<T> moved;
+  Wide<T> push;
+};
 template <class T, class Mask>
-HWY_INLINE Wide3<T> response(Mask is_hit, Wide<T> depth, const Wide3<T>& n, const Wide3<T>& way, const Wide3<T>& slip,
-                             const WovenSurface<T>& surface) {
+HWY_INLINE Pushed<T> response(Mask is_hit, Wide<T> depth, const Wide3<T>& n, const Wide3<T>& way, const Wide3<T>& slip,
+                              const WovenSurface<T>& surface) {
   // A contact that was made in this substep is no deeper than both sides moved: deeper ones come from a start
   // inside, and are worked out at a bounded speed.
   const Wide<T> most = hn::Sqrt(dot(way, way)) + set(surface.moved + surface.push_speed_step);
   const Wide<T> push = hn::IfThenElseZero(is_hit, hn::Min(depth, most));
-  return rubbed<WideArithmetic<T>>(times(push, n), slip, n, set(surface.friction) * push);
+  return {rubbed<WideArithmetic<T>>(times(push, n), slip, n, set(surface.friction) * push), push};
+}
+
+/// A vector of hits as who watches is told of them: WovenHit, all lanes.
+template <class T> struct WideHit {
+  std::ptrdiff_t cell = 0;
+  int corners = 0;
+  std::ptrdiff_t corner[3] = {}; ///< of lane 0
+  Wide<T> weight[3], lever[3];
+  Wide3<T> point, normal;
+  Wide<T> depth;
+  Pushed<T> pushed;
+};
+
+/// Asked for by loops of their own (k_kept): in those of everybody even a branch that is never taken costs registers,
+/// 2 to 4 % of a frame's instructions.
+template <class T, class Mask> void keep(const WovenHits<T>& hits, Mask is_hit, const WideHit<T>& wide) {
+  const Tag<T> tag;
+  HWY_ALIGN T lanes[18][k_lanes];
+  int rows = 0;
+  const auto put = [&](Wide<T> v) HWY_ATTR { hn::Store(v, tag, lanes[rows++]); };
+  for (const Wide3<T>* v : {&wide.point, &wide.normal, &wide.pushed.moved}) {
+    put(v->x);
+    put(v->y);
+    put(v->z);
+  }
+  put(wide.depth);
+  put(wide.pushed.push);
+  put(hn::IfThenElseZero(is_hit, set(T(1))));
+  for (int k = 0; k < wide.corners; ++k) {
+    put(wide.weight[k]);
+    put(wide.lever[k]);
+  }
+  for (std::size_t lane = 0; lane < hn::Lanes(tag); ++lane) {
+    if (lanes[11][lane] == T(0)) continue;
+    WovenHit<T> hit;
+    const auto at = static_cast<std::ptrdiff_t>(lane);
+    hit.cell = wide.cell + at;
+    for (int axis = 0; axis < 3; ++axis) {
+      hit.point[axis] = lanes[axis][lane];
+      hit.normal[axis] = lanes[3 + axis][lane];
+      hit.moved[axis] = lanes[6 + axis][lane];
+    }
+    hit.depth = lanes[9][lane];
+    hit.push = lanes[10][lane];
+    for (int k = 0; k < wide.corners; ++k) {
+      hit.corners[k] = wide.corner[k] + at;
+      hit.weights[k] = lanes[12 + 2 * k][lane];
+      hit.levers[k] = lanes[13 + 2 * k][lane];
+    }
+    hits.keep(hits.keeper, hit);
+  }
+}
+
+/// Of free particles.
+template <bool k_kept, class T, class Mask>
+HWY_INLINE void count_particles(WovenHits<T>& hits, Mask is_hit, std::ptrdiff_t at, const Wide3<T>& x,
+                                const Wide3<T>& n, Wide<T> depth, const Pushed<T>& pushed) {
+  hits.count += static_cast<std::int64_t>(hn::CountTrue(Tag<T>(), is_hit));
+  if constexpr (k_kept) {
+    const Wide<T> one = set(T(1));
+    keep(hits, is_hit, WideHit<T>{at, 1, {at}, {one, one, one}, {one, one, one}, x, n, depth, pushed});
+  }
 }
 
 template <class T> using Forms = ClosedForms<WideArithmetic<T>>;
@@ -60,9 +126,9 @@ template <class T> HWY_INLINE Wide3<T> normal_of(const Wide3<T>& q, Wide<T> leng
           hn::IfThenElse(has_none, on_axis.z, n.z)};
 }
 
-template <bool k_tapered, class T>
+template <bool k_tapered, bool k_kept, class T>
 T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider, T rise,
-                     std::int64_t* contacts) {
+                     WovenHits<T>* hits) {
   const Tag<T> tag;
   WideCollider<T> c(collider);
   c.radius = set(collider.radius + rise);
@@ -83,8 +149,10 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, cons
     const Wide3<T> n = normal_of<T>(q, from_axis, c.on_axis);
     const Wide3<T> way = minus(x, load(sheet.was, at));
     const Wide3<T> slip = minus(way, surface_move<T>(c, t, radius, n));
-    store(plus(x, response<T>(is_hit, radius - from_axis, n, way, slip, collider)), sheet.x, at);
-    *contacts += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
+    const Wide<T> depth = radius - from_axis;
+    const Pushed<T> pushed = response<T>(is_hit, depth, n, way, slip, collider);
+    store(plus(x, pushed.moved), sheet.x, at);
+    count_particles<k_kept>(*hits, is_hit, at, x, n, depth, pushed);
   });
   const T nearest = hn::GetLane(hn::MinOfLanes(tag, least));
   return k_tapered ? nearest : std::sqrt(nearest) - (collider.radius + rise);
@@ -92,14 +160,17 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, cons
 
 template <class T>
 T contact_capsule(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider, T rise,
-                  std::int64_t* contacts) {
-  const auto contact = collider.taper == T(0) ? contact_capsule_as<false, T> : contact_capsule_as<true, T>;
-  return contact(sheet, rows, collider, rise, contacts);
+                  WovenHits<T>* hits) {
+  const bool is_tapered = collider.taper != T(0);
+  const auto contact = hits->keep
+                           ? (is_tapered ? contact_capsule_as<true, true, T> : contact_capsule_as<false, true, T>)
+                           : (is_tapered ? contact_capsule_as<true, false, T> : contact_capsule_as<false, false, T>);
+  return contact(sheet, rows, collider, rise, hits);
 }
 
-template <class T>
-T contact_plane(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenPlane<T>& plane,
-                std::int64_t* contacts) {
+template <bool k_kept, class T>
+T contact_plane_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenPlane<T>& plane,
+                   WovenHits<T>* hits) {
   const Tag<T> tag;
   const Wide3<T> n = set3(plane.normal);
   const Wide<T> offset = set(plane.offset), far = set(std::numeric_limits<T>::max());
@@ -112,10 +183,17 @@ T contact_plane(const WovenSheetView<T>& sheet, const WovenRows& rows, const Wov
     const auto is_hit = hn::And(is_free, height < hn::Zero(tag));
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide3<T> way = minus(x, load(sheet.was, at));
-    store(plus(x, response<T>(is_hit, hn::Neg(height), n, way, way, plane)), sheet.x, at);
-    *contacts += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
+    const Pushed<T> pushed = response<T>(is_hit, hn::Neg(height), n, way, way, plane);
+    store(plus(x, pushed.moved), sheet.x, at);
+    count_particles<k_kept>(*hits, is_hit, at, x, n, hn::Neg(height), pushed);
   });
   return hn::GetLane(hn::MinOfLanes(tag, least));
+}
+
+template <class T>
+T contact_plane(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenPlane<T>& plane, WovenHits<T>* hits) {
+  const auto contact = hits->keep ? contact_plane_as<true, T> : contact_plane_as<false, T>;
+  return contact(sheet, rows, plane, hits);
 }
 
 // ---- edges and faces
@@ -133,12 +211,14 @@ template <class T> HWY_INLINE Corner<T> corner(const WovenSheetView<T>& sheet, i
 }
 
 /// One vector of cells against one collider.
-template <bool k_tapered, class T> class CellContact {
+template <bool k_tapered, bool k_kept, class T> class CellContact {
 public:
   using Mask = decltype(Wide<T>() < Wide<T>());
 
-  HWY_INLINE CellContact(const WovenSheetView<T>& sheet, const WovenCollider<T>& collider, const WideCollider<T>& wide)
-      : sheet_(sheet), collider_(collider), c_(wide), touched_(0) {}
+  /// `cell`: the element of the first corner.
+  HWY_INLINE CellContact(const WovenSheetView<T>& sheet, const WovenCollider<T>& collider, const WideCollider<T>& wide,
+                         const WovenHits<T>& hits, std::ptrdiff_t cell)
+      : sheet_(sheet), collider_(collider), c_(wide), hits_(hits), cell_(cell), touched_(0) {}
 
   /// Points that hit since the last call.
   HWY_INLINE std::int64_t touched() const { return touched_; }
@@ -156,9 +236,20 @@ public:
     const Wide3<T> way =
         plus(times(share_a, minus(a.x, load(sheet_.was, a.at))), times(s, minus(b.x, load(sheet_.was, b.at))));
     const Wide<T> by_a = a.w * share_a, by_b = b.w * s;
-    const Wide3<T> moved = moved_point(t, q, way, is_hit, by_a * share_a + by_b * s, hn::Max(by_a, by_b));
-    a.x = plus_times<T>(a.x, by_a, moved);
-    b.x = plus_times<T>(b.x, by_b, moved);
+    const Out out = way_out(t, q, way, is_hit, by_a * share_a + by_b * s, hn::Max(by_a, by_b));
+    a.x = plus_times<T>(a.x, by_a, out.per_lever);
+    b.x = plus_times<T>(b.x, by_b, out.per_lever);
+    if constexpr (k_kept)
+      keep(hits_, is_hit,
+           WideHit<T>{cell_,
+                      2,
+                      {a.at, b.at},
+                      {share_a, s, s},
+                      {by_a * out.per_weight, by_b * out.per_weight, s},
+                      on_cloth(t, q),
+                      out.n,
+                      out.depth,
+                      out.pushed});
     touched_ += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
   }
 
@@ -176,11 +267,22 @@ public:
         plus(times(u, minus(o.x, load(sheet_.was, o.at))),
              plus(times(v, minus(p.x, load(sheet_.was, p.at))), times(w, minus(q.x, load(sheet_.was, q.at)))));
     const Wide<T> by_o = o.w * u, by_p = p.w * v, by_q = q.w * w;
-    const Wide3<T> moved =
-        moved_point(set(t), away, way, is_hit, by_o * u + by_p * v + by_q * w, hn::Max(by_o, hn::Max(by_p, by_q)));
-    o.x = plus_times<T>(o.x, by_o, moved);
-    p.x = plus_times<T>(p.x, by_p, moved);
-    q.x = plus_times<T>(q.x, by_q, moved);
+    const Out out =
+        way_out(set(t), away, way, is_hit, by_o * u + by_p * v + by_q * w, hn::Max(by_o, hn::Max(by_p, by_q)));
+    o.x = plus_times<T>(o.x, by_o, out.per_lever);
+    p.x = plus_times<T>(p.x, by_p, out.per_lever);
+    q.x = plus_times<T>(q.x, by_q, out.per_lever);
+    if constexpr (k_kept)
+      keep(hits_, is_hit,
+           WideHit<T>{cell_,
+                      3,
+                      {o.at, p.at, q.at},
+                      {u, v, w},
+                      {by_o * out.per_weight, by_p * out.per_weight, by_q * out.per_weight},
+                      on_cloth(set(t), away),
+                      out.n,
+                      out.depth,
+                      out.pushed});
     touched_ += static_cast<std::int64_t>(hn::CountTrue(tag, is_hit));
   }
 
@@ -190,31 +292,44 @@ private:
     return radius * radius;
   }
 
-  /// What the contact point, q away from the place t of the axis, has to move by, over the sum of inverse mass times
-  /// squared share of its corners: each moves by its own inverse mass times share of that. `most` is the largest of
-  /// these products: beside a pinned corner the lever is kept to k_longest_lever.
-  HWY_INLINE Wide3<T> moved_point(Wide<T> t, const Wide3<T>& q, const Wide3<T>& way, Mask is_hit, Wide<T> weights,
-                                  Wide<T> most) const {
+  /// What the contact point, q away from the place t of the axis, has to move by. A corner's lever is its inverse mass
+  /// times share over the sum of inverse mass times squared share; `most` is the largest of the products: beside a
+  /// pinned corner the lever is kept to k_longest_lever.
+  struct Out {
+    Wide3<T> per_lever; ///< what a corner moves by over its inverse mass times share
+    Wide<T> per_weight; ///< lever over the same
+    Wide3<T> n;
+    Wide<T> depth;
+    Pushed<T> pushed;
+  };
+  HWY_INLINE Out way_out(Wide<T> t, const Wide3<T>& q, const Wide3<T>& way, Mask is_hit, Wide<T> weights,
+                         Wide<T> most) const {
     const Wide<T> length = length_of<T>(q), radius = Forms<T>::template radius_at<k_tapered>(c_, t);
     const Wide3<T> n = normal_of<T>(q, length, c_.on_axis);
     const Wide3<T> slip = minus(way, surface_move<T>(c_, t, radius, n));
-    const Wide3<T> moved = response<T>(is_hit, radius - length, n, way, slip, collider_);
+    const Wide<T> depth = radius - length;
+    const Pushed<T> pushed = response<T>(is_hit, depth, n, way, slip, collider_);
     const Wide<T> least = hn::Max(most * set(T(1.0 / k_longest_lever)), set(T(1e-20)));
-    return times(set(T(1)) / hn::Max(weights, least), moved);
+    const Wide<T> per_weight = set(T(1)) / hn::Max(weights, least);
+    return {times(per_weight, pushed.moved), per_weight, n, depth, pushed};
   }
+
+  HWY_INLINE Wide3<T> on_cloth(Wide<T> t, const Wide3<T>& q) const { return plus(plus_times<T>(c_.a, t, c_.axis), q); }
 
   const WovenSheetView<T>& sheet_;
   const WovenCollider<T>& collider_;
   const WideCollider<T>& c_;
+  const WovenHits<T>& hits_;
+  std::ptrdiff_t cell_;
   std::int64_t touched_;
 };
 
 template <class T> T widest(const WovenCollider<T>& c) { return c.radius + (c.taper > T(0) ? c.taper : T(0)); }
 
 /// Weft edges and diagonals alone, for cells so low that nothing pokes between the two.
-template <bool k_tapered, class T>
+template <bool k_tapered, bool k_kept, class T>
 void contact_low_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
-                       const CellFeatures<T>& features, std::int64_t* contacts) {
+                       const CellFeatures<T>& features, WovenHits<T>* hits) {
   const Tag<T> tag;
   const WideCollider<T> c(collider);
   const int block = rows.block;
@@ -233,24 +348,24 @@ void contact_low_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, co
       if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
       Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
       const auto exists = hn::And(near, load(row_of(sheet.weft.compliance, block, row) + lane) < real);
-      CellContact<k_tapered, T> contact(sheet, collider, c);
+      CellContact<k_tapered, k_kept, T> contact(sheet, collider, c, *hits, a.at);
       contact.edge(a, b, exists);
       const bool has_below = row + 1 < sheet.rows;
       Corner<T> d = corner(sheet, block, has_below ? row + 1 : row, lane);
       if (has_below) contact.edge(b, d, exists);
       if (contact.touched() == 0) continue;
-      *contacts += contact.touched();
+      hits->count += contact.touched();
       store(a.x, sheet.x, a.at);
       store(b.x, sheet.x, b.at);
       if (has_below) store(d.x, sheet.x, d.at);
     }
 }
 
-template <bool k_tapered, class T>
+template <bool k_tapered, bool k_kept, class T>
 void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
-                      const CellFeatures<T>& features, std::int64_t* contacts) {
+                      const CellFeatures<T>& features, WovenHits<T>* hits) {
   if (!features.high) {
-    contact_low_cells<k_tapered>(sheet, rows, collider, features, contacts);
+    contact_low_cells<k_tapered, k_kept>(sheet, rows, collider, features, hits);
     return;
   }
   const Tag<T> tag;
@@ -280,7 +395,7 @@ void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, con
 
       // Each feature is looked at where the ones before it left its corners.
       const auto exists = hn::And(near, load(row_of(sheet.weft.compliance, block, row) + lane) < real);
-      CellContact<k_tapered, T> contact(sheet, collider, c);
+      CellContact<k_tapered, k_kept, T> contact(sheet, collider, c, *hits, a.at);
       contact.edge(a, b, exists);
       if (has_below) {
         contact.edge(a, d, near);
@@ -294,7 +409,7 @@ void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, con
         }
       }
       if (contact.touched() == 0) continue;
-      *contacts += contact.touched();
+      hits->count += contact.touched();
       store(a.x, sheet.x, a.at);
       store(b.x, sheet.x, b.at);
       if (!has_below) continue;
@@ -305,9 +420,11 @@ void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, con
 
 template <class T>
 void contact_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
-                   const CellFeatures<T>& features, std::int64_t* contacts) {
-  const auto contact = collider.taper == T(0) ? contact_cells_as<false, T> : contact_cells_as<true, T>;
-  contact(sheet, rows, collider, features, contacts);
+                   const CellFeatures<T>& features, WovenHits<T>* hits) {
+  const bool is_tapered = collider.taper != T(0);
+  const auto contact = hits->keep ? (is_tapered ? contact_cells_as<true, true, T> : contact_cells_as<false, true, T>)
+                                  : (is_tapered ? contact_cells_as<true, false, T> : contact_cells_as<false, false, T>);
+  contact(sheet, rows, collider, features, hits);
 }
 
 } // namespace tutu::cloth::HWY_NAMESPACE

@@ -59,6 +59,7 @@ void WovenContacts<T>::begin_frame(proxies::CollisionQuery& query, const FrameIn
                                    const WovenSheet<T>& sheet) {
   input_ = &input;
   s_before_ = 0.0;
+  keeper_.begin_step(input.contacts);
   placed_.assign(input.colliders.start.begin(), input.colliders.start.end());
   if (colliders_.size() != placed_.size()) { // room for all there may be, so that no later frame asks for more
     const std::size_t most = tiles_.size() * (placed_.size() + 1);
@@ -141,6 +142,7 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
                                double s, double h) {
   const WovenSheetView<T>& view = sheet.view();
   place(sheet.origin(), s, h);
+  keeper_.begin_substep(sheet.origin(), h);
   bool all_numbers = true, covered = true;
   for (Tile& tile : tiles_) {
     const double way =
@@ -155,10 +157,11 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
     for (Tile& tile : tiles_) tile.margin = std::max(tile.margin, k_margin_growth * tile.travelled);
     find_pairs(query, sheet);
   }
+  WovenHits<T>& hits = keeper_.hits();
   const int ground = static_cast<int>(placed_.size());
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     Tile& tile = tiles_[t];
-    const std::int64_t before = counts_.contacts;
+    const std::int64_t before = hits.count;
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
       Pair& pair = pairs_[p];
       const double travelled = tile.travelled + collider_travel_[pair.collider];
@@ -173,14 +176,16 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
       }
       if (travelled < pair.wake) continue;
       ++counts_.queries;
-      const T gap = pair.collider == ground ? kernel.contact_plane(view, tile.rows, *ground_, &counts_.contacts)
-                                            : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider],
-                                                                     pair.rise, &counts_.contacts);
+      const T gap = pair.collider == ground
+                        ? kernel.contact_plane(view, tile.rows, *ground_, &hits)
+                        : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider], pair.rise, &hits);
+      if (keeper_.keeps()) take(sheet, pair, static_cast<double>(pair.rise));
       pair.wake = travelled + static_cast<double>(gap) - k_tile_travel_slack;
     }
-    tile.touched = counts_.contacts != before;
+    tile.touched = hits.count != before;
   }
-  resolve_cells(kernel, view);
+  resolve_cells(kernel, sheet);
+  counts_.contacts = hits.count;
   return true;
 }
 
@@ -190,8 +195,9 @@ template <class T> void WovenContacts<T>::sweep(WovenSheet<T>& sheet, const Tile
   collider.end = placed_[pair.collider];
   if (!input_->colliders.spin.empty()) collider.spin = s_step_ * input_->colliders.spin[pair.collider];
   collider.offset = offset_;
-  counts_.contacts += sweep_tile(sheet, tile.rows.block, tile.rows.first, tile.rows.last, collider,
-                                 pair.features.wide || pair.in_haste);
+  keeper_.hits().count += sweep_tile(sheet, tile.rows.block, tile.rows.first, tile.rows.last, collider,
+                                     pair.features.wide || pair.in_haste, keeper_.swept());
+  if (keeper_.keeps()) keeper_.take_swept(pair.collider, collider.start, collider.end);
 }
 
 template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(const Tile& tile, int collider) const {
@@ -222,12 +228,19 @@ template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(con
   return pair;
 }
 
-template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view) {
+template <class T> void WovenContacts<T>::take(const WovenSheet<T>& sheet, const Pair& pair, double rise) {
+  if (pair.collider == static_cast<int>(placed_.size())) keeper_.take(sheet, pair.collider, offset_);
+  else keeper_.take(sheet, pair.collider, placed_[pair.collider], offset_ + rise);
+}
+
+template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& kernel, const WovenSheet<T>& sheet) {
   if (features_ == ContactFeatures::particles) return;
+  const WovenSheetView<T>& view = sheet.view();
+  WovenHits<T>& hits = keeper_.hits();
   bool has_halo = false;
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     Tile& tile = tiles_[t];
-    const std::int64_t before = counts_.contacts;
+    const std::int64_t before = hits.count;
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
       const Pair& pair = pairs_[p];
       const double gap = pair.wake - tile.travelled - collider_travel_[pair.collider];
@@ -237,9 +250,10 @@ template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& ke
         has_halo = true;
       }
       kernel.contact_cells(view, tile.rows, colliders_[pair.collider],
-                           pair.in_haste ? all_features(tile) : pair.features, &counts_.contacts);
+                           pair.in_haste ? all_features(tile) : pair.features, &hits);
+      if (keeper_.keeps()) take(sheet, pair, 0.0);
     }
-    tile.touched = tile.touched || counts_.contacts != before;
+    tile.touched = tile.touched || hits.count != before;
   }
   if (has_halo) kernel.return_halo(view);
 }

@@ -3,6 +3,7 @@
 
 #include "cloth/state/frame.h"
 #include "cloth/state/solver_options.h"
+#include "cloth/woven/hit_keeper.h"
 #include "cloth/woven/sheet.h"
 #include "proxies/query/collision_query.h"
 
@@ -63,7 +64,8 @@ private:
   void find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet);
   void place(const Vec3& origin, double s, double h);
   void sweep(WovenSheet<T>& sheet, const Tile& tile, const Pair& pair);
-  void resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view);
+  void resolve_cells(const WovenKernel<T>& kernel, const WovenSheet<T>& sheet);
+  void take(const WovenSheet<T>& sheet, const Pair& pair, double rise); ///< what a call met, for who watches
   /// Low cells are looked for within a fifth more than they are at rest, others within k_cell_stretch, m.
   static double reach_of(const Tile& tile, const Pair& pair) {
     return pair.features.high ? tile.reach : 2.0 * static_cast<double>(pair.features.around);
@@ -87,6 +89,7 @@ private:
   std::optional<WovenPlane<T>> ground_;
   std::vector<double> collider_travel_;  ///< m since pairs were found; the ground, last, stays at 0
   double s_before_ = 0.0, s_step_ = 0.0; ///< of the frame
+  HitKeeper<T> keeper_;
   ContactCounts counts_;
 };
 

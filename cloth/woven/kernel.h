@@ -143,6 +143,23 @@ template <class T> struct WovenPlane : WovenSurface<T> {
   T offset = 0; ///< with the contact offset, m
 };
 
+/// A point of the cloth that was pushed, for who watches: ClothContact in plain numbers, elements for particles.
+template <class T> struct WovenHit {
+  std::ptrdiff_t cell = 0;                  ///< the element whose turn it was
+  std::ptrdiff_t corners[3] = {-1, -1, -1}; ///< elements, halo included
+  T weights[3] = {}, levers[3] = {};
+  T point[3] = {}, normal[3] = {}, moved[3] = {}; ///< m from the view's origin; unit; m
+  T depth = 0, push = 0; ///< m, inside the collider with its offset and `rise`; m along the normal
+};
+
+/// What a call met. Lanes come in the order of the elements within a vector, so that those of one cell come in order on
+/// every target, but cells do not.
+template <class T> struct WovenHits {
+  std::int64_t count = 0;
+  void (*keep)(void* keeper, const WovenHit<T>&) = nullptr; ///< null: nobody watches
+  void* keeper = nullptr;
+};
+
 template <class T>
 using WovenFinish = T (*)(const WovenSheetView<T>&, const WovenStep<T>&, int block, int first, int last);
 
@@ -175,17 +192,16 @@ template <class T> struct WovenKernel {
   void (*bounds)(Sheet, int block, int first, int last, T* low, T* high);
 
   /// Pushes free particles out of a collider and rubs. Returns the smallest distance of one to the surface (with the
-  /// offset) before that, m, and adds to `contacts`.
-  /// `rise` adds to the collider's radius.
-  T (*contact_capsule)(Sheet, const WovenRows&, const WovenCollider<T>&, T rise, std::int64_t* contacts);
-  T (*contact_plane)(Sheet, const WovenRows&, const WovenPlane<T>&, std::int64_t* contacts);
+  /// offset) before that, m, and adds to `hits`. `rise` adds to the collider's radius.
+  T (*contact_capsule)(Sheet, const WovenRows&, const WovenCollider<T>&, T rise, WovenHits<T>* hits);
+  T (*contact_plane)(Sheet, const WovenRows&, const WovenPlane<T>&, WovenHits<T>* hits);
 
   /// Edges and faces of the cells between a block and the next, from row `first` to the one below `last` - 1. Before
   /// those of the first block that needs_halo() the halo must be fetched (positions and starts), and given back after
   /// the last block's.
   void (*fetch_halo)(Sheet);
   void (*contact_cells)(Sheet, const WovenRows&, const WovenCollider<T>&, const CellFeatures<T>& features,
-                        std::int64_t* contacts);
+                        WovenHits<T>* hits);
   void (*return_halo)(Sheet);
 };
 

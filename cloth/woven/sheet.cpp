@@ -120,6 +120,14 @@ template <class T> int WovenSheet<T>::column_of(int block, int lane) const {
   return column < weave_.columns ? column : -1;
 }
 
+template <class T> int WovenSheet<T>::particle_at(std::ptrdiff_t element) const {
+  const auto block = static_cast<int>(element / view_.block_stride),
+             in_block = static_cast<int>(element % view_.block_stride);
+  // What lies behind a lane's end are the columns that come next.
+  const int column = column_of(0, in_block % k_lanes) + block;
+  return weave_.particle(in_block / k_lanes, column % weave_.columns);
+}
+
 template <class T> WovenTable<T> WovenSheet<T>::table(std::vector<T> values) {
   // One block for all when every row is uniform.
   bool uniform = true;

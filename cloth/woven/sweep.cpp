@@ -9,7 +9,8 @@ namespace {
 
 template <class T> class TileSweep {
 public:
-  TileSweep(WovenSheet<T>& sheet, const SweptCollider& collider) : sheet_(sheet), collider_(collider) {}
+  TileSweep(WovenSheet<T>& sheet, const SweptCollider& collider, std::vector<ClothContact>* kept)
+      : sheet_(sheet), collider_(collider), kept_(kept) {}
 
   void particle(int i) {
     if (!(sheet_.inverse_mass(i) > 0.0)) return;
@@ -17,7 +18,7 @@ public:
     const auto contact = swept_contact(sheet_.start_position(i), now, collider_);
     if (!contact) return;
     sheet_.move_to(i, now + contact->passed * contact->touch.normal);
-    ++count_;
+    count({i, -1, -1}, *contact, {1.0, 0.0, 0.0});
   }
 
   void triangle(const std::array<int, 3>& corners) {
@@ -32,30 +33,46 @@ public:
     for (int k = 0; k < 3; ++k)
       lightness += sheet_.inverse_mass(corners[k]) * contact->weights[k] * contact->weights[k];
     if (!(lightness > 0.0)) return;
+    std::array<double, 3> levers;
     for (int k = 0; k < 3; ++k) {
-      const double lever = sheet_.inverse_mass(corners[k]) * contact->weights[k] / lightness;
-      const double moved = contact->passed * std::min(lever, k_longest_lever);
+      levers[k] = std::min(sheet_.inverse_mass(corners[k]) * contact->weights[k] / lightness, k_longest_lever);
+      const double moved = contact->passed * levers[k];
       if (moved > 0.0) sheet_.move_to(corners[k], to[k] + moved * contact->touch.normal);
     }
-    ++count_;
+    count(corners, *contact, levers);
   }
 
   std::int64_t count() const { return count_; }
 
 private:
+  void count(const std::array<int, 3>& particles, const SweptContact& contact, const std::array<double, 3>& levers) {
+    ++count_;
+    if (!kept_) return;
+    ClothContact& kept = kept_->emplace_back();
+    kept.particles = particles;
+    kept.weights = contact.weights;
+    kept.levers = levers;
+    kept.contact = contact.touch;
+    kept.push = contact.passed;
+    kept.moved = contact.passed * contact.touch.normal;
+    kept.cause = ContactCause::sweep;
+    kept.time = contact.time;
+  }
+
   WovenSheet<T>& sheet_;
   const SweptCollider& collider_;
+  std::vector<ClothContact>* kept_;
   std::int64_t count_ = 0;
 };
 
 } // namespace
 
 template <class T>
-std::int64_t sweep_tile(WovenSheet<T>& sheet, int block, int first, int last, const SweptCollider& collider,
-                        bool cells) {
+std::int64_t sweep_tile(WovenSheet<T>& sheet, int block, int first, int last, const SweptCollider& collider, bool cells,
+                        std::vector<ClothContact>* kept) {
   const WovenSheetView<T>& view = sheet.view();
   const Weave& weave = sheet.weave();
-  TileSweep<T> sweep(sheet, collider);
+  TileSweep<T> sweep(sheet, collider, kept);
   for (int row = first; row < last; ++row)
     for (int lane = 0; lane < view.lanes; ++lane) {
       const int column = sheet.column_of(block, lane);
@@ -74,7 +91,9 @@ std::int64_t sweep_tile(WovenSheet<T>& sheet, int block, int first, int last, co
   return sweep.count();
 }
 
-template std::int64_t sweep_tile(WovenSheet<float>&, int, int, int, const SweptCollider&, bool);
-template std::int64_t sweep_tile(WovenSheet<double>&, int, int, int, const SweptCollider&, bool);
+template std::int64_t sweep_tile(WovenSheet<float>&, int, int, int, const SweptCollider&, bool,
+                                 std::vector<ClothContact>*);
+template std::int64_t sweep_tile(WovenSheet<double>&, int, int, int, const SweptCollider&, bool,
+                                 std::vector<ClothContact>*);
 
 } // namespace tutu::cloth

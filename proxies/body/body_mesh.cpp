@@ -130,7 +130,7 @@ bool BodyMesh::winds_around(const Vec3& point) const {
   return winding_number(point) > 0.5;
 }
 
-Contact BodyMesh::signed_distance(const Vec3& point) const {
+MeshContact BodyMesh::signed_distance(const Vec3& point) const {
   require_usable(point);
   MeshPoint on = *tree_->nearest(point, k_anywhere, {});
   bool inside = false;
@@ -138,8 +138,8 @@ Contact BodyMesh::signed_distance(const Vec3& point) const {
   else if (!is_closed_ || tree_->box_holds(point)) inside = winds_around(point);
   if (inside && !inner_.empty() && inner_[on.triangle]) on = *tree_->nearest(point, k_anywhere, inner_);
   const double distance = inside ? -on.distance : on.distance;
-  if (on.distance <= k_on_surface) return {distance, pseudonormal(on), on.closest};
-  return {distance, (point - on.closest) / distance, on.closest};
+  const Vec3 normal = on.distance <= k_on_surface ? pseudonormal(on) : Vec3((point - on.closest) / distance);
+  return {{distance, normal, on.closest}, on.triangle, on.feature, on.weights};
 }
 
 double BodyMesh::winding_number(const Vec3& point) const {

@@ -40,6 +40,13 @@ enum class SideRule {
   winding_number ///< generalised, above 1/2 [Jacobson et al. 2013]: open, overlapping or several surfaces
 };
 
+/// A point against the surface, and the part of it that is nearest.
+struct MeshContact : Contact {
+  int triangle = 0; ///< as of MeshPoint
+  MeshFeature feature = MeshFeature::face;
+  Vec3 weights = Vec3::Zero(); ///< closest = sum_k weights[k] * corner_k
+};
+
 /// What a mesh was found to be in its bind pose, and the rule that follows. Vertices at the same place count as one:
 /// a texture seam is no opening.
 struct MeshCensus {
@@ -99,7 +106,7 @@ public:
 
   /// From the body's surface. A point inside is measured to the shells that are not wholly inside others. On the
   /// surface itself the normal is the pseudonormal of the nearest feature.
-  Contact signed_distance(const Vec3& point) const;
+  MeshContact signed_distance(const Vec3& point) const;
 
   /// By the rule of the census; a point on the surface may be either.
   bool is_inside(const Vec3& point) const;

@@ -6,15 +6,14 @@
 //             contact(point, collider)                             narrow phase: distance, normal, closest point
 //             (or neither, where leaves_contacts(): the closed forms of proxies/distance, for many points at once)
 //
-// Against the true body in the place of proxies: make_mesh_query, and place_body beside place.
+// Against the true body in the place of proxies: make_mesh_query, and body().
 #pragma once
 
-#include "proxies/body/body_features.h"
+#include "proxies/body/moving_body.h"
 #include "proxies/contact.h"
 #include "proxies/motion/collider_set.h"
 
 #include <array>
-#include <limits>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -59,17 +58,8 @@ public:
   /// One point against one placed collider. Signed distance and conventions of proxies/contact.h.
   virtual Contact contact(const Vec3& point, int collider) const = 0;
 
-  /// Puts the true body where it is at `s` in [0, 1] of the frame. Only for the backend that knows it.
-  virtual void place_body(const SweptColliders&, double /*s*/) {}
-
-  /// Edges and faces of a triangle of cloth (corners, world, m) against the true body where it was placed:
-  /// BodyFeatures::contacts. Only for the backend that knows it.
-  virtual double body_contacts(const std::array<Vec3, 3>& /*cloth*/, const BodyReach&, std::vector<BodyContact>&) {
-    return std::numeric_limits<double>::infinity();
-  }
-
-  /// How far the true body's surface goes from the frame's start to its end where it is nearest to `point` now, m.
-  virtual Vec3 body_way(const Vec3& /*point*/) const { return Vec3::Zero(); }
+  /// The true body, of the backend that has it; it is to be placed beside place(). Null of the others.
+  virtual MovingBody* body() { return nullptr; }
 };
 
 enum class Backend {

@@ -16,6 +16,11 @@ inline std::vector<std::int64_t> simd_targets() {
   return all;
 }
 
+/// Targets that multiply and add in one rounding: all of x86 from AVX2 on.
+inline bool fuses(std::int64_t target) {
+  return (target & (HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)) != 0 || (HWY_ARCH_X86 == 0 && target != HWY_EMU128);
+}
+
 /// Kernels dispatch to one target for as long as this lives.
 struct OnTarget {
   explicit OnTarget(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }

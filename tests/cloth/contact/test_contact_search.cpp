@@ -33,6 +33,7 @@ void respond(ContactSearch& search, proxies::CollisionQuery& query, double s, st
     particles.positions[i] += push * contact.normal;
     Vec3& v = particles.velocities[i];
     v -= v.dot(contact.normal) * contact.normal;
+    return Response{};
   });
 }
 

@@ -146,12 +146,12 @@ TEST(TriangleContacts, AreThoseOfASearchOverAllPairs) {
           for (int i = 0; i < particles->count(); ++i)
             if (!pinned[i]) particles->positions[i] += h * particles->velocities[i];
         const std::vector<Vec3> free = plain.positions;
-        search.for_each_contact(*query, s, pinned, fast,
-                                [&](int i, int collider, const proxies::Contact& contact, double push) {
-                                  search.push_out(fast.positions[i], starts[i], collider, contact, push, {});
-                                });
-        triangles.for_each_contact(*query, search, fast, [&](const TriangleContact& contact) {
-          push_out(contact, search, starts, {}, fast.positions);
+        search.for_each_contact(
+            *query, s, pinned, fast, [&](int i, int collider, const proxies::Contact& contact, double push) {
+              return Response{search.push_out(fast.positions[i], starts[i], collider, contact, push, {})};
+            });
+        triangles.for_each_contact(*query, search, fast, [&](const ClothContact& contact) {
+          return Response{push_out(contact, search, starts, {}, fast.positions)};
         });
         proxies::colliders_at(colliders, s, now);
         twin.particles(before, now, twin_starts, h, plain.positions);

@@ -369,7 +369,8 @@ TYPED_TEST(WovenKernels, ParticlesAgainstCapsulesAndSpheres) {
     Both<T> both(garment, 9);
     both.predict();
     std::mt19937_64 random(10);
-    std::int64_t hits = 0, expected_hits = 0;
+    WovenHits<T> hits;
+    std::int64_t expected_hits = 0;
     for (const test::TwinCollider& collider : colliders_near(both.twin.x, random, 20)) {
       const WovenCollider<T> c = as_kernel_wants<T>(collider, both.sheet.origin());
       const double rise = 0.002;
@@ -385,8 +386,8 @@ TYPED_TEST(WovenKernels, ParticlesAgainstCapsulesAndSpheres) {
       both.copy();
       both.sheet.follow();
     }
-    EXPECT_GT(hits, 0);
-    EXPECT_NEAR(static_cast<double>(hits), static_cast<double>(expected_hits), Bound<T>::k_single ? 2.0 : 0.0);
+    EXPECT_GT(hits.count, 0);
+    EXPECT_NEAR(static_cast<double>(hits.count), static_cast<double>(expected_hits), Bound<T>::k_single ? 2.0 : 0.0);
   });
 }
 
@@ -397,7 +398,8 @@ TYPED_TEST(WovenKernels, ParticlesAgainstAPlane) {
     Both<T> both(garment, 12);
     both.predict();
     std::mt19937_64 random(13);
-    std::int64_t hits = 0, expected_hits = 0;
+    WovenHits<T> hits;
+    std::int64_t expected_hits = 0;
     for (const double friction : {0.0, 0.3, 2.0}) {
       test::TwinPlane plane;
       plane.plane.normal = (Vec3::UnitY() + test::random_point(random, 0.3)).normalized();
@@ -421,7 +423,7 @@ TYPED_TEST(WovenKernels, ParticlesAgainstAPlane) {
       both.copy();
       both.sheet.follow();
     }
-    EXPECT_NEAR(static_cast<double>(hits), static_cast<double>(expected_hits), Bound<T>::k_single ? 2.0 : 0.0);
+    EXPECT_NEAR(static_cast<double>(hits.count), static_cast<double>(expected_hits), Bound<T>::k_single ? 2.0 : 0.0);
   });
 }
 
@@ -433,7 +435,8 @@ TYPED_TEST(WovenKernels, EdgesAndFaces) {
     Both<T> both(garment, 14);
     both.predict();
     std::mt19937_64 random(15);
-    std::int64_t hits = 0, expected_hits = 0;
+    WovenHits<T> hits;
+    std::int64_t expected_hits = 0;
     bool high = false;
     for (const test::TwinCollider& collider : colliders_near(both.twin.x, random, 10)) {
       high = !high;
@@ -451,8 +454,8 @@ TYPED_TEST(WovenKernels, EdgesAndFaces) {
       both.copy();
     }
     const std::int64_t undecided = Bound<T>::k_single ? both.twin.grazing : 0;
-    EXPECT_LE(std::abs(hits - expected_hits), undecided);
-    all_hits += hits;
+    EXPECT_LE(std::abs(hits.count - expected_hits), undecided);
+    all_hits += hits.count;
   });
   EXPECT_GT(all_hits, 1000);
 }

@@ -202,16 +202,11 @@ template <bool k_double> std::uint64_t hash_on(std::int64_t target, const Garmen
   return state_hash(solver->particles());
 }
 
-/// Targets that multiply and add in one rounding: all of x86 from AVX2 on.
-bool fuses(std::int64_t target) {
-  return (target & (HWY_AVX2 | HWY_AVX3 | HWY_AVX3_DL)) != 0 || (HWY_ARCH_X86 == 0 && target != HWY_EMU128);
-}
-
 void compare_on_all_targets(const Garment& garment, ContactFeatures features) {
   std::optional<std::uint64_t> single[2], two[2];
   for (const std::int64_t target : test::simd_targets()) {
     SCOPED_TRACE(hwy::TargetName(target));
-    const bool fused = fuses(target);
+    const bool fused = test::fuses(target);
     const std::uint64_t s = hash_on<false>(target, garment, features);
     const std::uint64_t d = hash_on<true>(target, garment, features);
     EXPECT_EQ(single[fused].value_or(s), s);
@@ -265,7 +260,7 @@ TEST(WovenSheets, SweptTilesOfARingHoldEachParticleOnce) {
     WovenSheet<double> sheet(one.garment, false);
     std::int64_t count = 0;
     for (int block = 0; block < sheet.view().blocks; ++block)
-      count += sweep_tile(sheet, block, 0, one.garment.rows, ball, false);
+      count += sweep_tile(sheet, block, 0, one.garment.rows, ball, false, nullptr);
     EXPECT_EQ(count, one.garment.particle_count() - static_cast<std::int64_t>(one.garment.pins.size()));
     for (int i = 0; i < one.garment.particle_count(); ++i) {
       if (sheet.inverse_mass(i) > 0.0) {

@@ -23,6 +23,10 @@ struct Moving {
   SweptColliders swept(std::optional<Plane> ground) const {
     return {{}, {}, ground, {}, at_start.positions, at_end.positions};
   }
+  void place(double s) {
+    query->body()->begin_frame(at_start.positions, at_end.positions);
+    query->body()->place(s);
+  }
 };
 
 TEST(MeshQuery, TheBodyIsWhereItsVerticesAreAtThatMoment) {
@@ -32,7 +36,7 @@ TEST(MeshQuery, TheBodyIsWhereItsVerticesAreAtThatMoment) {
   std::mt19937_64 random(1);
   for (const double s : {0.0, 0.25, 1.0}) {
     moving.query->place({}, swept.ground);
-    moving.query->place_body(swept, s);
+    moving.place(s);
     Surface now = moving.at_start;
     for (std::size_t v = 0; v < now.positions.size(); ++v)
       now.positions[v] += static_cast<float>(s) * (moving.at_end.positions[v] - now.positions[v]);
@@ -49,12 +53,11 @@ TEST(MeshQuery, TheBodyIsWhereItsVerticesAreAtThatMoment) {
 TEST(MeshQuery, ItsSurfaceGoesWithTheNearestTriangle) {
   Moving moving;
   const SweptColliders swept = moving.swept(std::nullopt);
-  moving.query->place({}, swept.ground);
-  moving.query->place_body(swept, 0.0);
+  moving.place(0.0);
   for (const Vec3& direction : {Vec3(1, 0, 0), Vec3(-1, 0, 0), Vec3(0, 1, 0), Vec3(1, 1, 1), Vec3(-1, 2, 0.5)}) {
     const Vec3 point = 0.32 * direction.normalized();
     const double x = moving.query->contact(point, swept.body_index()).closest.x();
-    EXPECT_LT((moving.query->body_way(point) - Vec3(0.5 * x + 0.2, 0, 0)).norm(), 1e-6);
+    EXPECT_LT((moving.query->body()->way(point) - Vec3(0.5 * x + 0.2, 0, 0)).norm(), 1e-6);
   }
 }
 
@@ -82,10 +85,10 @@ TEST(MeshQuery, WhatDoesNotFitIsRefused) {
   EXPECT_THROW(moving.query->place(limb, std::nullopt), std::invalid_argument);
   swept = moving.swept(std::nullopt);
   swept.body_end = swept.body_end.first(3);
-  EXPECT_THROW(moving.query->place_body(swept, 0.5), std::invalid_argument);
-  EXPECT_THROW(moving.query->place_body({}, 0.5), std::invalid_argument);
+  EXPECT_THROW(moving.query->find_candidates(swept, points, 0.01, candidates), std::invalid_argument);
+  EXPECT_THROW(moving.query->find_candidates({}, points, 0.01, candidates), std::invalid_argument);
   moving.at_end.positions[3].x() = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(moving.query->place_body(moving.swept(std::nullopt), 0.5), std::invalid_argument);
+  EXPECT_THROW(moving.place(0.5), std::invalid_argument);
 }
 
 } // namespace
