@@ -5,7 +5,9 @@
 #include "cloth/garment/dihedral.h"
 #include "cloth/state/tolerances.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tutu::cloth {
 
@@ -79,7 +81,8 @@ template <class Scalar> void MeshXpbd<Scalar>::solve(Stretch& stretch, Scalar pe
   const Scalar length = d.norm();
   if (!(length > 0)) return; // two particles in one place: no direction
   const Scalar compliance = stretch.compliance * per_h2;
-  const Scalar step = (stretch.rest_length - length - compliance * stretch.multiplier) / (wi + wj + compliance);
+  const Scalar elastic = (stretch.rest_length - length - compliance * stretch.multiplier) / (wi + wj + compliance);
+  const Scalar step = std::min(elastic, (longest_edge_ * stretch.rest_length - length) / (wi + wj));
   stretch.multiplier += step;
   const Vector was = was_[stretch.j] - was_[stretch.i];
   const Scalar share = step / length;
@@ -147,6 +150,12 @@ template <class Scalar> bool MeshXpbd<Scalar>::is_broken() const {
   return false;
 }
 
+template <class Scalar> bool MeshXpbd<Scalar>::is_outrun() const {
+  return std::ranges::any_of(garment_->pins, [&](const Pin& pin) {
+    return particles_.velocities[pin.particle].squaredNorm() > k_fastest_particle * k_fastest_particle;
+  });
+}
+
 template <class Scalar>
 std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxies::CollisionQuery& query) {
   times_ = {};
@@ -169,6 +178,7 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
     const double s = static_cast<double>(substep + 1) / input.substeps;
     const Moment now{*garment_, pinned_, substep, h, particles_, before_};
     predict(input, s, h);
+    longest_edge_ = is_outrun() ? std::numeric_limits<Scalar>::max() : static_cast<Scalar>(k_longest_edge);
     solve_constraints(h, substep % 2 == 0);
     close_seams(*garment_, pinned_, particles_);
     time = lap(time, times_.cloth);

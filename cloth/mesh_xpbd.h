@@ -72,7 +72,8 @@ private:
   void solve(const Hinge& hinge, Scalar per_h2);
   void solve(const TetherLimit& tether);
   void solve_constraints(double h, bool up_first);
-  bool is_broken() const;
+  bool is_broken() const; ///< an edge
+  bool is_outrun() const; ///< by a pin that no particle may follow
 
   const Garment* garment_;
   Particles particles_;
@@ -84,6 +85,7 @@ private:
   std::vector<TetherLimit> tethers_;
   std::vector<Vector> x_, was_, predicted_; ///< from a particle of the garment: being solved, at the substep's start,
                                             ///< and before the constraints
+  Scalar longest_edge_ = 0;                 ///< over its length at rest: k_longest_edge, but where a pin outruns all
   ContactSearch contacts_;
   TriangleContacts triangle_contacts_;
   SolverTimes times_;

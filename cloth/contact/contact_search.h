@@ -81,6 +81,7 @@ public:
   /// How far the collider's fastest point has moved since the last substep, and how far a point may besides be pushed.
   double substep_way(int collider) const;
   double push_speed_step() const { return since_before_ * k_push_out_speed * seconds_; }
+  double substep_seconds() const { return since_before_ * seconds_; }
 
   const ContactCounts& counts() const { return counts_; }
   BroadPhaseView broad_phase() const { return {{}, candidates_.begin, candidates_.colliders}; }

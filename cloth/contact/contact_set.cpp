@@ -39,27 +39,25 @@ void set_on_body(ClothContact& contact, const proxies::BodyContact& on_body) {
   contact.on_collider = on_body.on_body;
 }
 
-void ContactSet::add(ClothContact contact) {
-  if (ring_.empty()) {
-    ++kept_;
-    return;
-  }
+void ContactSet::add(const ClothContact& contact) {
+  ++kept_;
+  if (ring_.empty()) return;
+  ClothContact& kept = ring_[(kept_ - 1) % ring_.size()];
+  kept = contact;
   std::size_t part = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (contact.particles[k] < 0 || contact.weights[k] == 0.0) continue;
-    contact.particles[part] = contact.particles[k];
-    contact.weights[part] = contact.weights[k];
-    contact.levers[part] = contact.levers[k];
+    kept.particles[part] = contact.particles[k];
+    kept.weights[part] = contact.weights[k];
+    kept.levers[part] = contact.levers[k];
     ++part;
   }
   for (; part < 3; ++part) {
-    contact.particles[part] = -1;
-    contact.weights[part] = contact.levers[part] = 0.0;
+    kept.particles[part] = -1;
+    kept.weights[part] = kept.levers[part] = 0.0;
   }
-  contact.step = step_;
-  contact.substep = substep_;
-  ring_[kept_ % ring_.size()] = contact;
-  ++kept_;
+  kept.step = step_;
+  kept.substep = substep_;
 }
 
 } // namespace tutu::cloth

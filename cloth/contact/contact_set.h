@@ -93,7 +93,7 @@ public:
   }
   void begin_substep() { ++substep_; }
   /// With `step` and `substep` as of now. Corners without a share are left out, and the others moved up.
-  void add(ClothContact contact);
+  void add(const ClothContact& contact);
 
   /// Kept, of them the oldest first.
   std::size_t size() const { return kept_ < ring_.size() ? static_cast<std::size_t>(kept_) : ring_.size(); }

@@ -22,6 +22,17 @@ double passed_by(const SweptCollider& collider, double time, const proxies::Cont
   return collider.offset - (now - surface).dot(touch.normal);
 }
 
+/// The first touch of what began the step outside the collider. Where that was nearer than the cloth keeps, as other
+/// contacts and the last step's push leave it, it is to come no nearer. Nothing for what began inside.
+template <class Cloth> auto first_touch(const Cloth& from, const Cloth& to, const SweptCollider& collider) {
+  auto impact = proxies::time_of_impact(from, to, collider.start, collider.end, collider.offset);
+  if (!impact || !is_inside(impact->contact, collider.offset)) return impact;
+  const double began = impact->contact.distance - k_touching;
+  if (began < k_touching) return decltype(impact){};
+  impact = proxies::time_of_impact(from, to, collider.start, collider.end, began);
+  return impact && !is_inside(impact->contact, began) ? impact : decltype(impact){};
+}
+
 std::optional<SweptContact> if_passed(const SweptContact& contact) {
   return contact.passed > 0.0 ? std::optional(contact) : std::nullopt;
 }
@@ -29,21 +40,20 @@ std::optional<SweptContact> if_passed(const SweptContact& contact) {
 } // namespace
 
 std::optional<SweptContact> swept_contact(const Vec3& from, const Vec3& to, const SweptCollider& collider) {
-  const auto impact = proxies::time_of_impact(from, to, collider.start, collider.end, collider.offset);
-  if (!impact || is_inside(impact->contact, collider.offset)) return std::nullopt;
-  return if_passed(
-      {impact->contact, {1.0, 0.0, 0.0}, passed_by(collider, impact->time, impact->contact, to), impact->time});
+  const auto impact = first_touch(from, to, collider);
+  if (!impact) return std::nullopt;
+  const double passed = passed_by(collider, impact->time, impact->contact, to);
+  return if_passed({impact->contact, {1.0, 0.0, 0.0}, passed, impact->time});
 }
 
 std::optional<SweptContact> swept_contact(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to,
                                           const SweptCollider& collider) {
-  const auto impact = proxies::time_of_impact(from, to, collider.start, collider.end, collider.offset);
-  if (!impact || impact->contact.feature == proxies::ClothFeature::crossing ||
-      is_inside(impact->contact, collider.offset))
-    return std::nullopt;
+  const auto impact = first_touch(from, to, collider);
+  if (!impact || impact->contact.feature == proxies::ClothFeature::crossing) return std::nullopt;
   const std::array<double, 3>& weights = impact->contact.weights;
   const Vec3 now = weights[0] * to[0] + weights[1] * to[1] + weights[2] * to[2];
-  return if_passed({impact->contact, weights, passed_by(collider, impact->time, impact->contact, now), impact->time});
+  const double passed = passed_by(collider, impact->time, impact->contact, now);
+  return if_passed({impact->contact, weights, passed, impact->time});
 }
 
 } // namespace tutu::cloth

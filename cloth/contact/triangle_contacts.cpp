@@ -69,6 +69,25 @@ double TriangleContacts::squared_edge_for(const proxies::Capsule& proxy, double 
   return 4.5 * (kept * kept - radius * radius);
 }
 
+double TriangleContacts::squared_longest_edge(const Triangle& triangle, const std::vector<Vec3>& x) {
+  const auto& [a, b, c] = triangle;
+  return std::max({(x[b] - x[a]).squaredNorm(), (x[c] - x[b]).squaredNorm(), (x[a] - x[c]).squaredNorm()});
+}
+
+bool TriangleContacts::is_kept_by_particles(const Triangle& triangle, double longest, const ContactSearch& search,
+                                            const Pair& pair) const {
+  if (longest > pair.squared_edge) return false;
+  const ContactSearch::Way way = search.way();
+  const double radius = way.now[pair.collider].narrowest(), widest_kept = 2.0 * (radius + search.offset());
+  if (k_torn_cell * k_torn_cell * longest <= widest_kept * widest_kept) return true;
+  const auto& [a, b, c] = triangle;
+  const double motion =
+      std::sqrt(std::max({way.ways[a].squaredNorm(), way.ways[b].squaredNorm(), way.ways[c].squaredNorm()})) +
+      search.substep_way(pair.collider);
+  return motion <
+         std::min(0.5 * proxies::safe_motion(radius, search.offset()), k_hasty_speed * search.substep_seconds());
+}
+
 std::optional<ClothContact> TriangleContacts::with_levers(ClothContact contact) const {
   double lightness = 0.0; // sum of inverse mass times squared weight
   double most = 0.0;

@@ -25,7 +25,8 @@ Vec3 push_out(const ClothContact& contact, const ContactSearch& search, std::spa
 ///
 /// Pairs that cannot have met since they were last asked are skipped, as in ContactSearch. `automatic` asks only pairs
 /// of a triangle that is so large at this moment, for so thin a proxy, that particles which keep the offset could leave
-/// the proxy in it.
+/// the proxy in it; and, where the two meet so fast that the triangle may be torn (k_hasty_speed), all into which the
+/// proxy would then fit.
 ///
 /// Against the true body, with `triangles` only, a triangle has one contact for each pair of features that meet
 /// (proxies/body/body_features.h), down to k_body_depth; a triangle waits while a corner is worked out of it. They are
@@ -60,6 +61,14 @@ private:
   void list_triangles();
   void find_pairs(proxies::CollisionQuery& query, const ContactSearch& search, const Particles& particles);
   double squared_edge_for(const proxies::Capsule& proxy, double offset) const; ///< of Pair
+  /// m since candidates were found, of the corner that went the farthest.
+  static double travelled(const Triangle& triangle, const ContactSearch::Way& way) {
+    return std::max({way.particles[triangle[0]], way.particles[triangle[1]], way.particles[triangle[2]]});
+  }
+  static double squared_longest_edge(const Triangle& triangle, const std::vector<Vec3>& x);
+  /// Whether the three corners, which keep the offset, keep the pair apart; `longest`: edge, squared.
+  bool is_kept_by_particles(const Triangle& triangle, double longest, const ContactSearch& search,
+                            const Pair& pair) const;
   std::optional<ClothContact> swept(const Triangle& triangle, const ContactSearch& search, int proxy,
                                     const Particles& particles) const;
   /// Nothing where the two are clear of each other (the pair then knows for how long), or all is moved that may be.
@@ -100,20 +109,22 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
   const bool asks_body = features_ == ContactFeatures::triangles && search.colliders().has_body();
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& triangle = triangles_[t];
-    const auto& [a, b, c] = triangle;
+    double gone = travelled(triangle, way);
+    double longest = -1.0; // edge, squared: of the triangle as it is, where somebody asks
+    const auto meet_if = [&](const std::optional<ClothContact>& contact) {
+      if (!contact) return;
+      meet(*contact, search, particles, on_contact);
+      gone = travelled(triangle, way);
+      longest = -1.0;
+    };
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
       Pair& pair = pairs_[p];
-      const double travelled =
-          std::max({way.particles[a], way.particles[b], way.particles[c]}) + way.colliders[pair.collider];
-      if (travelled < pair.wake) continue;
-      const std::vector<Vec3>& x = particles.positions;
-      if (std::max({(x[b] - x[a]).squaredNorm(), (x[c] - x[b]).squaredNorm(), (x[a] - x[c]).squaredNorm()}) <=
-          pair.squared_edge)
-        continue;
-      if (const auto contact = swept(triangle, search, pair.collider, particles))
-        meet(*contact, search, particles, on_contact);
-      if (const auto contact = found(triangle, search, pair, travelled, particles))
-        meet(*contact, search, particles, on_contact);
+      const double since = gone + way.colliders[pair.collider];
+      if (since < pair.wake) continue;
+      if (longest < 0.0) longest = squared_longest_edge(triangle, particles.positions);
+      if (is_kept_by_particles(triangle, longest, search, pair)) continue;
+      meet_if(swept(triangle, search, pair.collider, particles));
+      meet_if(found(triangle, search, pair, since, particles));
     }
     if (asks_body) meet_body(query, search, t, particles, on_contact);
   }
@@ -135,13 +146,13 @@ void TriangleContacts::meet_body(proxies::CollisionQuery& query, ContactSearch& 
   const std::vector<Vec3>& x = particles.positions;
   const ContactSearch::Way way = search.way();
   const int body = search.colliders().body_index();
-  const double travelled = std::max({way.particles[a], way.particles[b], way.particles[c]}) + way.colliders[body];
-  if (travelled < body_wakes_[t]) return;
+  const double since = travelled(triangle, way) + way.colliders[body];
+  if (since < body_wakes_[t]) return;
   if (search.is_in_body(a) || search.is_in_body(b) || search.is_in_body(c)) return; // they come out first
   body_contacts_.clear();
   const double clear = query.body()->contacts({x[a], x[b], x[c]}, {search.offset(), k_body_depth}, body_contacts_);
   ++counts_.queries;
-  body_wakes_[t] = travelled + clear - k_travel_slack;
+  body_wakes_[t] = since + clear - k_travel_slack;
   for (const proxies::BodyContact& pair : body_contacts_) {
     auto contact = with_levers({triangle, pair.weights, {}, body, pair});
     if (!contact) continue;

@@ -59,7 +59,7 @@ void WovenContacts<T>::begin_frame(proxies::CollisionQuery& query, const FrameIn
                                    const WovenSheet<T>& sheet) {
   input_ = &input;
   s_before_ = 0.0;
-  keeper_.begin_step(input.contacts);
+  keeper_.begin_step(sheet, input.contacts);
   placed_.assign(input.colliders.start.begin(), input.colliders.start.end());
   if (colliders_.size() != placed_.size()) { // room for all there may be, so that no later frame asks for more
     const std::size_t most = tiles_.size() * (placed_.size() + 1);
@@ -179,12 +179,12 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
       const T gap = pair.collider == ground
                         ? kernel.contact_plane(view, tile.rows, *ground_, &hits)
                         : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider], pair.rise, &hits);
-      if (keeper_.keeps()) take(sheet, pair, static_cast<double>(pair.rise));
+      if (keeper_.keeps()) take(pair, static_cast<double>(pair.rise));
       pair.wake = travelled + static_cast<double>(gap) - k_tile_travel_slack;
     }
     tile.touched = hits.count != before;
   }
-  resolve_cells(kernel, sheet);
+  resolve_cells(kernel, view);
   counts_.contacts = hits.count;
   return true;
 }
@@ -228,14 +228,13 @@ template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(con
   return pair;
 }
 
-template <class T> void WovenContacts<T>::take(const WovenSheet<T>& sheet, const Pair& pair, double rise) {
-  if (pair.collider == static_cast<int>(placed_.size())) keeper_.take(sheet, pair.collider, offset_);
-  else keeper_.take(sheet, pair.collider, placed_[pair.collider], offset_ + rise);
+template <class T> void WovenContacts<T>::take(const Pair& pair, double rise) {
+  if (pair.collider == static_cast<int>(placed_.size())) keeper_.take(pair.collider, offset_);
+  else keeper_.take(pair.collider, placed_[pair.collider], offset_ + rise);
 }
 
-template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& kernel, const WovenSheet<T>& sheet) {
+template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view) {
   if (features_ == ContactFeatures::particles) return;
-  const WovenSheetView<T>& view = sheet.view();
   WovenHits<T>& hits = keeper_.hits();
   bool has_halo = false;
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
@@ -251,7 +250,7 @@ template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& ke
       }
       kernel.contact_cells(view, tile.rows, colliders_[pair.collider],
                            pair.in_haste ? all_features(tile) : pair.features, &hits);
-      if (keeper_.keeps()) take(sheet, pair, 0.0);
+      if (keeper_.keeps()) take(pair, 0.0);
     }
     tile.touched = tile.touched || hits.count != before;
   }

@@ -64,8 +64,8 @@ private:
   void find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet);
   void place(const Vec3& origin, double s, double h);
   void sweep(WovenSheet<T>& sheet, const Tile& tile, const Pair& pair);
-  void resolve_cells(const WovenKernel<T>& kernel, const WovenSheet<T>& sheet);
-  void take(const WovenSheet<T>& sheet, const Pair& pair, double rise); ///< what a call met, for who watches
+  void resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view);
+  void take(const Pair& pair, double rise); ///< what a call met, for who watches
   /// Low cells are looked for within a fifth more than they are at rest, others within k_cell_stretch, m.
   static double reach_of(const Tile& tile, const Pair& pair) {
     return pair.features.high ? tile.reach : 2.0 * static_cast<double>(pair.features.around);

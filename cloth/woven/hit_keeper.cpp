@@ -13,13 +13,14 @@ template <class T> Vec3 vector(const T (&v)[3]) {
 
 } // namespace
 
-template <class T> void HitKeeper<T>::begin_step(ContactSet* set) {
+template <class T> void HitKeeper<T>::begin_step(const WovenSheet<T>& sheet, ContactSet* set) {
   set_ = set;
   hits_.keep = nullptr;
   if (!set_) return;
   set_->begin_step();
   hits_.keep = [](void* keeper, const WovenHit<T>& hit) { static_cast<HitKeeper*>(keeper)->called_.push_back(hit); };
   hits_.keeper = this;
+  if (particles_.empty()) particles_ = sheet.particles_of_elements();
 }
 
 template <class T> void HitKeeper<T>::add(ClothContact& contact) {
@@ -29,12 +30,13 @@ template <class T> void HitKeeper<T>::add(ClothContact& contact) {
 
 template <class T>
 template <class Finish>
-void HitKeeper<T>::take_all(const WovenSheet<T>& sheet, int collider, double within, const Finish& finish) {
-  std::ranges::stable_sort(called_, {}, &WovenHit<T>::cell);
+void HitKeeper<T>::take_all(int collider, double within, const Finish& finish) {
+  if (!std::ranges::is_sorted(called_, {}, &WovenHit<T>::cell))
+    std::ranges::stable_sort(called_, {}, &WovenHit<T>::cell);
   for (const WovenHit<T>& hit : called_) {
     ClothContact contact;
     for (int k = 0; k < 3; ++k) {
-      contact.particles[k] = hit.corners[k] < 0 ? -1 : sheet.particle_at(hit.corners[k]);
+      contact.particles[k] = hit.corners[k] < 0 ? -1 : particles_[hit.corners[k]];
       contact.weights[k] = static_cast<double>(hit.weights[k]);
       contact.levers[k] = static_cast<double>(hit.levers[k]);
     }
@@ -50,13 +52,12 @@ void HitKeeper<T>::take_all(const WovenSheet<T>& sheet, int collider, double wit
   called_.clear();
 }
 
-template <class T>
-void HitKeeper<T>::take(const WovenSheet<T>& sheet, int collider, const proxies::Capsule& proxy, double within) {
-  take_all(sheet, collider, within, [&](ClothContact& contact) { set_on_proxy(contact, proxy); });
+template <class T> void HitKeeper<T>::take(int collider, const proxies::Capsule& proxy, double within) {
+  take_all(collider, within, [&](ClothContact& contact) { set_on_proxy(contact, proxy); });
 }
 
-template <class T> void HitKeeper<T>::take(const WovenSheet<T>& sheet, int ground, double within) {
-  take_all(sheet, ground, within, [](ClothContact& contact) { contact.on = ColliderFeature::ground; });
+template <class T> void HitKeeper<T>::take(int ground, double within) {
+  take_all(ground, within, [](ClothContact& contact) { contact.on = ColliderFeature::ground; });
 }
 
 template <class T>

@@ -12,7 +12,7 @@ namespace tutu::cloth {
 /// one call by cell, those of one cell as they came.
 template <class T> class HitKeeper {
 public:
-  void begin_step(ContactSet* set);
+  void begin_step(const WovenSheet<T>& sheet, ContactSet* set);
   void begin_substep(const Vec3& origin, double h) {
     origin_ = origin;
     h_ = h;
@@ -23,18 +23,19 @@ public:
   /// For kernels' calls: its count goes on and on.
   WovenHits<T>& hits() { return hits_; }
   /// After a call: with which collider it was, and what of its surface is `within`, m: the offset, and the rise.
-  void take(const WovenSheet<T>& sheet, int collider, const proxies::Capsule& proxy, double within);
-  void take(const WovenSheet<T>& sheet, int ground, double within);
+  void take(int collider, const proxies::Capsule& proxy, double within);
+  void take(int ground, double within);
 
   /// Contacts of a sweep that lack their collider. `from` to `to`: the proxy's way in the substep.
   std::vector<ClothContact>* swept() { return keeps() ? &swept_ : nullptr; }
   void take_swept(int collider, const proxies::Capsule& from, const proxies::Capsule& to);
 
 private:
-  template <class Finish> void take_all(const WovenSheet<T>& sheet, int collider, double within, const Finish& finish);
+  template <class Finish> void take_all(int collider, double within, const Finish& finish);
   void add(ClothContact& contact);
 
   ContactSet* set_ = nullptr;
+  std::vector<int> particles_; ///< of each element; made when somebody first watches
   Vec3 origin_ = Vec3::Zero();
   double h_ = 0.0;
   WovenHits<T> hits_;

@@ -120,12 +120,15 @@ template <class T> int WovenSheet<T>::column_of(int block, int lane) const {
   return column < weave_.columns ? column : -1;
 }
 
-template <class T> int WovenSheet<T>::particle_at(std::ptrdiff_t element) const {
-  const auto block = static_cast<int>(element / view_.block_stride),
-             in_block = static_cast<int>(element % view_.block_stride);
-  // What lies behind a lane's end are the columns that come next.
-  const int column = column_of(0, in_block % k_lanes) + block;
-  return weave_.particle(in_block / k_lanes, column % weave_.columns);
+template <class T> std::vector<int> WovenSheet<T>::particles_of_elements() const {
+  std::vector<int> particles(static_cast<std::size_t>(view_.blocks + 2) * view_.block_stride, -1);
+  for (int block = 0; block < view_.blocks + 2; ++block)
+    for (int lane = 0; lane < view_.lanes; ++lane)
+      for (int row = 0; row < view_.rows; ++row) { // what lies behind a lane's end are the columns that come next
+        const int column = (column_of(0, lane) + block) % weave_.columns;
+        particles[block * view_.block_stride + row * k_lanes + lane] = weave_.particle(row, column);
+      }
+  return particles;
 }
 
 template <class T> WovenTable<T> WovenSheet<T>::table(std::vector<T> values) {

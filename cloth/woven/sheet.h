@@ -58,7 +58,8 @@ public:
   void follow();
 
   std::ptrdiff_t element_of(int particle) const { return elements_[particle]; }
-  int particle_at(std::ptrdiff_t element) const; ///< of copies behind the lanes' ends too: of what they copy
+  /// One an element, copies behind the lanes' ends too: of what they copy. -1 where there is no cloth.
+  std::vector<int> particles_of_elements() const;
   Vec3 position(int particle) const { return at(view_.x, particle) + origin_; }
   Vec3 start_position(int particle) const { return at(view_.was, particle) + origin_; }
   double inverse_mass(int particle) const;  ///< 1/kg, 0 for pinned particles

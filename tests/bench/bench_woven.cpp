@@ -3,6 +3,7 @@
 //   taskset -c 0 bench_woven --benchmark_min_time=0.05 --benchmark_repetitions=5
 //   --benchmark_report_aggregates_only=true
 #include "cloth/solver.h"
+#include "tests/bench/worn.h"
 #include "tests/support/woven_cases.h"
 
 #include <benchmark/benchmark.h>
@@ -19,35 +20,16 @@ void tube(benchmark::State& state, bool is_worn, bool has_air) {
   if (has_air) garment.fabric.air = Air{};
   const auto solver = make_solver(garment, {});
   const auto query = proxies::make_query(proxies::Backend::hybrid);
-  std::vector<Vec3> pins_start(garment.pins.size()), pins_end(garment.pins.size());
-  std::vector<proxies::Capsule> start(1), end(1);
-  const std::vector<double> friction = {0.3};
-  FrameInput input;
-  input.substeps = 10;
-  int frame = 0;
+  bench::Worn worn(garment, is_worn);
   const auto advance = [&] {
-    const auto place = [&](int f, std::vector<Vec3>& pins, proxies::Capsule& body) { // to and fro, once a second
-      const double swing = std::sin(f * 2.0 * std::numbers::pi / 60.0);
-      for (std::size_t k = 0; k < pins.size(); ++k)
-        pins[k] = garment.rest_positions[garment.pins[k].particle] + Vec3(0.03 * swing, 0, 0);
-      body = {{0.05 * swing, 1.0, 0}, {0.1 * swing, 0.7, 0}, 0.2};
-    };
-    place(frame, pins_start, start[0]);
-    place(++frame, pins_end, end[0]);
-    input.pins_start = pins_start;
-    input.pins_end = pins_end;
-    if (is_worn) {
-      input.colliders.start = start;
-      input.colliders.end = end;
-      input.friction = friction;
-    }
-    if (solver->step(input, *query)) state.SkipWithError("diverged");
+    if (solver->step(worn.advance(), *query)) state.SkipWithError("diverged");
   };
   for (int f = 0; f < 60; ++f) advance();
   for (auto _ : state) advance();
   const double particles = static_cast<double>(n) * n;
-  state.counters["ns"] = benchmark::Counter(particles * input.substeps * static_cast<double>(state.iterations()) * 1e-9,
-                                            benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  state.counters["ns"] =
+      benchmark::Counter(particles * bench::Worn::k_substeps * static_cast<double>(state.iterations()) * 1e-9,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 void sizes(benchmark::internal::Benchmark* b) { b->DenseRange(17, 130)->Unit(benchmark::kMicrosecond); }

@@ -101,6 +101,46 @@ TEST(MeshBackend, EdgesAndFacesKeepABallOutBetweenParticles) {
     }
 }
 
+/// A body that is nearly nothing, that goes through itself, or touches itself, or was turned over here and there; and
+/// friction that lets nothing go, cloth without thickness, and with more than there is room for: only numbers.
+TEST(MeshBackend, BodiesThatNoSceneShouldHaveGiveNumbers) {
+  test::Surface flat = test::sphere_surface(0.15, 2), crossed = flat, touching = flat, turned = flat;
+  for (Vec3f& p : flat.positions) p.y() *= 1e-4f;
+  test::append(crossed, test::sphere_surface(0.1, 2, {0.1f, 0.02f, 0}));
+  test::append(touching, test::sphere_surface(0.15, 2, {0.3f, 0, 0}));
+  std::swap(turned.triangles[40][1], turned.triangles[40][2]);
+  const std::array<std::uint32_t, 3> sliver = {turned.triangles[7][0], turned.triangles[7][0], turned.triangles[7][1]};
+  turned.triangles.push_back(sliver);
+  for (const test::Surface& surface : {flat, crossed, touching, turned})
+    for (const double thickness : {0.0, 0.004, 0.5})
+      for (const SolverKind kind : {SolverKind::xpbd, SolverKind::mass_spring}) {
+        GarmentDescription description;
+        description.file = "sheet";
+        description.shape = app::mesh_sheet(5, {-0.25, 1, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, 0.25);
+        description.fabric.thickness = thickness;
+        const Garment garment = build_garment(description);
+        Ball body;
+        body.surface = surface;
+        body.start = body.end = surface.positions;
+        const auto query = body.query();
+        const auto solver = make_solver(garment, {.solver = kind, .features = ContactFeatures::triangles});
+        const std::vector<double> friction = {1e6, 1e6};
+        FrameInput input;
+        input.friction = friction;
+        input.substeps = kind == SolverKind::xpbd ? 6 : 24;
+        body.move_to({0, 0.84, 0});
+        for (int frame = 0; frame < 12; ++frame) {
+          body.move_to({0, 0.84 + 0.2 * std::sin(0.4 * frame), 0});
+          input.colliders = body.swept(std::nullopt);
+          if (solver->step(input, *query)) break; // told, not shown
+          for (const Vec3& p : solver->particles().positions) ASSERT_TRUE(p.allFinite());
+          for (const Vec3& v : solver->particles().velocities) ASSERT_TRUE(v.allFinite());
+        }
+      }
+  for (Vec3f& p : flat.positions) p.y() = 0.0f;
+  EXPECT_THROW(proxies::BodyMesh(flat.positions, flat.triangles), std::invalid_argument) << "no thickness at all";
+}
+
 TEST(MeshBackend, ClothThatBeginsInsideIsWorkedOutNotThrown) {
   const Garment garment = sheet(12);
   Ball ball;

@@ -4,6 +4,7 @@
 #include "cloth/air/wind.h"
 #include "cloth/metrics.h"
 #include "cloth/recovery.h"
+#include "tests/support/irregular_tube.h"
 #include "tests/support/swinging_limbs.h"
 #include "tests/support/woven_cases.h"
 
@@ -60,4 +61,10 @@ int main() {
       std::printf("%s, %s, in the air: %016" PRIx64 "\n", one.name.c_str(), std::string(name_of(kind)).c_str(),
                   hash_of(one.garment, {.solver = kind}, proxies::Backend::hybrid, 3));
   }
+  const Garment irregular = test::irregular_tube(14);
+  for (const proxies::Backend backend : {proxies::Backend::hybrid, proxies::Backend::fcl, proxies::Backend::brute})
+    for (const SolverKind kind : {SolverKind::mass_spring, SolverKind::xpbd})
+      std::printf("irregular tube, %s, %s: %016" PRIx64 "\n", std::string(name_of(kind)).c_str(),
+                  std::string(proxies::k_backend_names[static_cast<std::size_t>(backend)]).c_str(),
+                  hash_of(irregular, {.solver = kind, .features = ContactFeatures::triangles}, backend, 4));
 }

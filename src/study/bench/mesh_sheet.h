@@ -52,4 +52,23 @@ inline cloth::MeshShape mesh_sheet(int cells, const Vec3& corner, const Vec3& ac
   return mesh;
 }
 
+/// mesh_sheet() rolled up: `place(u, v)` says where the point is that is the share u in [0, 1] of the way round and v
+/// of the way down; a triangle's side is to be about 1 / `cells` of the way round, of which the way down is `length`.
+template <class Place> cloth::MeshShape mesh_tube(int cells, double length, double jitter, const Place& place) {
+  cloth::MeshShape mesh = mesh_sheet(cells, Vec3::Zero(), Vec3::UnitX(), length * Vec3::UnitY(), jitter);
+  std::vector<std::uint32_t> at; // of each corner: where a row ends is where it began
+  std::vector<Vec3> rolled;
+  std::uint32_t first = 0;
+  for (const Vec3& p : mesh.positions) {
+    if (p.x() == 0.0) first = static_cast<std::uint32_t>(rolled.size());
+    const bool is_end = p.x() == 1.0;
+    at.push_back(is_end ? first : static_cast<std::uint32_t>(rolled.size()));
+    if (!is_end) rolled.push_back(place(p.x(), p.y() / length));
+  }
+  mesh.positions = std::move(rolled);
+  for (auto& triangle : mesh.triangles)
+    for (std::uint32_t& corner : triangle) corner = at[corner];
+  return mesh;
+}
+
 } // namespace tutu::app

@@ -23,21 +23,24 @@ cloth::Fabric stage_fabric() {
   return fabric;
 }
 
-/// n x n particles, or about as many, in the plane z = 0, about x = 0, hanging down from `top`; the first row is held.
-cloth::Garment hanging_sheet(int n, double size, double top, Weave weave = Weave::threads) {
-  constexpr double k_irregular = 0.25; // of a side
-  const Vec3 corner(-0.5 * size, top, 0), across(size, 0, 0), down(0, -size, 0);
+constexpr double k_irregular = 0.25; // of a side
+
+/// A square of n x n particles, or about as many, from `corner` along `across` and `down`. Nothing holds it.
+cloth::GarmentDescription sheet(int n, const Vec3& corner, const Vec3& across, const Vec3& down, Weave weave) {
   cloth::GarmentDescription description;
   description.name = "sheet";
   description.fabric = stage_fabric();
-  cloth::Attachment upper{"stage", 0, 0, 0, -1};
-  if (weave == Weave::mesh) {
-    description.shape = mesh_sheet(n - 1, corner, across, down, k_irregular);
-    upper.above = top;
-  } else {
-    description.shape = cloth::GridShape{n, n, corner, across, down};
-  }
-  description.attachments = {upper};
+  if (weave == Weave::mesh) description.shape = mesh_sheet(n - 1, corner, across, down, k_irregular);
+  else description.shape = cloth::GridShape{n, n, corner, across, down};
+  return description;
+}
+
+/// The same in the plane z = 0, about x = 0, hanging down from `top`; the first row is held.
+cloth::Garment hanging_sheet(int n, double size, double top, Weave weave) {
+  cloth::GarmentDescription description = sheet(n, {-0.5 * size, top, 0}, Vec3(size, 0, 0), Vec3(0, -size, 0), weave);
+  cloth::Attachment& upper = description.attachments.emplace_back("stage");
+  upper.last_column = -1;
+  if (weave == Weave::mesh) upper.above = top;
   return cloth::build_garment(description);
 }
 
@@ -47,19 +50,32 @@ struct TubeEnds {
   double top, top_radius, bottom, bottom_radius;
 };
 
-cloth::Garment tube(int rows, int columns, const TubeEnds& ends, bool both_held, double bend = cloth::Fabric().bend) {
+/// `columns` around the axis x = z = 0, or about as many; its upper end is held, or both are.
+cloth::Garment tube(int rows, int columns, const TubeEnds& ends, bool both_held, Weave weave,
+                    double bend = cloth::Fabric().bend) {
   cloth::GarmentDescription description;
   description.name = "tube";
-  cloth::TubeShape shape;
-  shape.rows = rows;
-  shape.columns = columns;
-  shape.rings = {{ends.top, ends.top_radius, ends.top_radius, 0, 0},
-                 {ends.bottom, ends.bottom_radius, ends.bottom_radius, 0, 0}};
-  description.shape = shape;
   description.fabric = stage_fabric();
   description.fabric.bend = bend;
-  description.attachments = {{"stage", 0, 0, 0, -1}};
-  if (both_held) description.attachments.push_back({"stage", -1, -1, 0, -1});
+  cloth::Attachment upper{"stage"}, lower{"stage", -1, -1};
+  if (weave == Weave::mesh) {
+    const double length = (rows - 1) * std::sqrt(0.75) / columns; // of near to equilateral triangles
+    description.shape = mesh_tube(columns, length, k_irregular, [&](double u, double v) {
+      const double radius = std::lerp(ends.top_radius, ends.bottom_radius, v), angle = 2.0 * k_pi * u;
+      return Vec3(radius * std::sin(angle), std::lerp(ends.top, ends.bottom, v), radius * std::cos(angle));
+    });
+    upper.above = ends.top;
+    lower.within = cloth::Attachment::Ball{{0, ends.bottom, 0}, ends.bottom_radius + 1e-6};
+  } else {
+    cloth::TubeShape shape;
+    shape.rows = rows;
+    shape.columns = columns;
+    shape.rings = {{ends.top, ends.top_radius, ends.top_radius, 0, 0},
+                   {ends.bottom, ends.bottom_radius, ends.bottom_radius, 0, 0}};
+    description.shape = shape;
+  }
+  description.attachments = {upper};
+  if (both_held) description.attachments.push_back(lower);
   return cloth::build_garment(description);
 }
 
@@ -114,7 +130,11 @@ StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed) {
   return scene;
 }
 
-StabilityScene fast_leg(double speed, std::uint64_t seed) { return fast_leg(FastLeg{speed}, seed); }
+StabilityScene fast_leg(double speed, std::uint64_t seed, Weave weave) {
+  FastLeg leg{speed};
+  leg.weave = weave;
+  return fast_leg(leg, seed);
+}
 
 StabilityScene coarse_cells(const CoarseCells& cells, std::uint64_t seed) {
   constexpr int k_particles = 6; // a side: five cells, so that the middle of the sheet is the middle of a cell
@@ -152,8 +172,8 @@ StabilityScene start_inside(const StartInside& arm, std::uint64_t seed) {
   const double tube_radius = std::max(0.12, 2.4 * arm.radius), off_the_wall = arm.radius - arm.depth;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = arm.axis_within ? "start-inside, arm within" : "start-inside, arm outside";
-  scene.garment = tube(20, 32, {1.5, tube_radius, 1.0, tube_radius}, false);
+  scene.name = fmt::format("start-inside{}, arm {}", suffix_of(arm.weave), arm.axis_within ? "within" : "outside");
+  scene.garment = tube(20, 32, {1.5, tube_radius, 1.0, tube_radius}, false, arm.weave);
   scene.start = uneven(scene.garment, random);
   const double angle = 2.0 * k_pi * unit(random);
   const double from_axis = tube_radius + (arm.axis_within ? -off_the_wall : off_the_wall);
@@ -166,19 +186,20 @@ StabilityScene start_inside(const StartInside& arm, std::uint64_t seed) {
   return scene;
 }
 
-StabilityScene start_inside(bool axis_within, std::uint64_t seed) {
+StabilityScene start_inside(bool axis_within, std::uint64_t seed, Weave weave) {
   StartInside arm;
+  arm.weave = weave;
   arm.axis_within = axis_within;
   return start_inside(arm, seed);
 }
 
-StabilityScene teleport(bool told, std::uint64_t seed) {
+StabilityScene teleport(bool told, std::uint64_t seed, Weave weave) {
   constexpr int k_frame = 30;
   const Vec3 jump(5, 0, 0);
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = told ? "teleport, told" : "teleport, not told";
-  scene.garment = tube(20, 40, {1.0, 0.16, 0.5, 0.30}, false);
+  scene.name = fmt::format("teleport{}, {}", suffix_of(weave), told ? "told" : "not told");
+  scene.garment = tube(20, 40, {1.0, 0.16, 0.5, 0.30}, false, weave);
   scene.start = uneven(scene.garment, random);
   scene.seconds = 3.0;
   scene.limits.crossings = told; // what flies through the air at 300 m/s may pass on either side
@@ -208,12 +229,12 @@ void stand_alone(StabilityScene& scene) {
 
 } // namespace
 
-StabilityScene randomised(std::uint64_t seed) {
+StabilityScene randomised(std::uint64_t seed, Weave weave) {
   constexpr double k_size = 0.6, k_top = 1.6;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = "randomised";
-  scene.garment = hanging_sheet(20, k_size, k_top);
+  scene.name = fmt::format("randomised{}", suffix_of(weave));
+  scene.garment = hanging_sheet(20, k_size, k_top, weave);
   scene.start = scene.garment.rest_positions;
   const std::vector<std::uint8_t> pinned = cloth::pinned_flags(scene.garment);
   for (std::size_t i = 0; i < scene.start.size(); ++i) {
@@ -225,12 +246,12 @@ StabilityScene randomised(std::uint64_t seed) {
   return scene;
 }
 
-StabilityScene flattened(bool upright, std::uint64_t seed) {
+StabilityScene flattened(bool upright, std::uint64_t seed, Weave weave) {
   constexpr double k_top = 1.5;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = upright ? "flattened upright" : "flattened level";
-  scene.garment = tube(20, 32, {k_top, 0.12, 1.0, 0.2}, false);
+  scene.name = fmt::format("flattened{} {}", suffix_of(weave), upright ? "upright" : "level");
+  scene.garment = tube(20, 32, {k_top, 0.12, 1.0, 0.2}, false, weave);
   // Along the wall first, across it not at all: in one plane to the bit.
   scene.start = uneven(scene.garment, random);
   const std::vector<std::uint8_t> pinned = cloth::pinned_flags(scene.garment);
@@ -244,15 +265,15 @@ StabilityScene flattened(bool upright, std::uint64_t seed) {
   return scene;
 }
 
-StabilityScene twist(std::uint64_t seed) {
+StabilityScene twist(std::uint64_t seed, Weave weave) {
   constexpr double k_turns = 3.0, k_top = 1.6, k_length = 0.6, k_drawn_up = 0.15;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = "twist";
+  scene.name = fmt::format("twist{}", suffix_of(weave));
   // As stiff as denim. A limp tube turned into a rope passes through itself, and keeps two turns that undo each other
   // (some 10 % of stretch) for ever.
   constexpr double k_bend = 1e-4; // N m
-  scene.garment = tube(24, 32, {k_top, 0.1, k_top - k_length, 0.1}, true, k_bend);
+  scene.garment = tube(24, 32, {k_top, 0.1, k_top - k_length, 0.1}, true, weave, k_bend);
   scene.start = uneven(scene.garment, random);
   scene.seconds = 7.0;
   scene.pose = [pinned = pins_at_rest(scene.garment)](double t, std::vector<Capsule>&, std::vector<Vec3>& pins) {
@@ -266,16 +287,12 @@ StabilityScene twist(std::uint64_t seed) {
 }
 
 /// Shut at the bottom: cloth as thin as this slips through a ring, as silk does.
-StabilityScene funnel(std::uint64_t seed) {
+StabilityScene funnel(std::uint64_t seed, Weave weave) {
   constexpr int k_staves = 16;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = "funnel";
-  cloth::GarmentDescription description;
-  description.name = "sheet";
-  description.shape = cloth::GridShape{26, 26, {-0.25, 1.05, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}};
-  description.fabric = stage_fabric();
-  scene.garment = cloth::build_garment(description);
+  scene.name = fmt::format("funnel{}", suffix_of(weave));
+  scene.garment = cloth::build_garment(sheet(26, {-0.25, 1.05, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, weave));
   scene.start = uneven(scene.garment, random);
   scene.friction = 0.5;
   scene.seconds = 5.0;
@@ -290,15 +307,13 @@ StabilityScene funnel(std::uint64_t seed) {
   return scene;
 }
 
-StabilityScene rotating_sphere(double friction, std::uint64_t seed) {
+StabilityScene rotating_sphere(double friction, std::uint64_t seed, Weave weave) {
   constexpr double k_radius = 0.2;
   std::mt19937_64 random(seed);
   StabilityScene scene;
-  scene.name = fmt::format("rotating-sphere, friction {:g}", friction);
-  cloth::GarmentDescription description;
-  description.name = "sheet";
-  description.shape = cloth::GridShape{24, 24, {-0.2, 1.0 + k_radius + 0.003, -0.2}, {0.4, 0, 0}, {0, 0, 0.4}};
-  description.fabric = stage_fabric();
+  scene.name = fmt::format("rotating-sphere{}, friction {:g}", suffix_of(weave), friction);
+  cloth::GarmentDescription description =
+      sheet(24, {-0.2, 1.0 + k_radius + 0.003, -0.2}, {0.4, 0, 0}, {0, 0, 0.4}, weave);
   description.fabric.drag = 0.2; // the air stands still and would hold the cloth back
   scene.garment = cloth::build_garment(description);
   scene.start = uneven(scene.garment, random);
@@ -315,52 +330,59 @@ StabilityScene rotating_sphere(double friction, std::uint64_t seed) {
   return scene;
 }
 
+namespace {
+
+using Builder = std::function<StabilityScene(std::uint64_t)>;
+
+/// A builder for each of these values.
+template <class Value, class Build> std::vector<Builder> variants(std::initializer_list<Value> values, Build build) {
+  std::vector<Builder> builders;
+  for (const Value& value : values) builders.push_back([=](std::uint64_t seed) { return build(value, seed); });
+  return builders;
+}
+
+void add_families(Weave weave, std::vector<StabilityFamily>& families) {
+  const auto add = [&](const char* name, const char* what, std::vector<Builder> builders) {
+    families.push_back({std::string(name) + suffix_of(weave),
+                        std::string(what) + (weave == Weave::mesh ? ", of irregular triangles" : ""),
+                        std::move(builders)});
+  };
+  const auto both = [weave](StabilityScene (*build)(bool, std::uint64_t, Weave)) {
+    return variants({true, false}, [=](bool which, std::uint64_t seed) { return build(which, seed, weave); });
+  };
+  const auto only = [weave](StabilityScene (*build)(std::uint64_t, Weave)) {
+    return std::vector<Builder>{[=](std::uint64_t seed) { return build(seed, weave); }};
+  };
+  std::vector<Builder> cells;
+  for (const bool along : {false, true})
+    for (int k = 1; k <= 6; ++k)
+      cells.push_back([=](std::uint64_t seed) { return coarse_cells(k, along, seed, weave); });
+  add("fast-leg", "a leg goes through a hanging sheet at 1 to 30 m/s",
+      variants({1.0, 2.0, 5.0, 10.0, 20.0, 30.0},
+               [=](double speed, std::uint64_t seed) { return fast_leg(speed, seed, weave); }));
+  add("thin-leg", "a leg as thin as a hand goes through cloth of 4 to 32 mm",
+      variants({0.004, 0.008, 0.016, 0.032}, [=](double thickness, std::uint64_t seed) {
+        return fast_leg({5.0, 0.012, thickness, weave}, seed);
+      }));
+  add("coarse-cells", "cells 1 to 6 times as large as the limb that pushes into them", cells);
+  add("start-inside", "an arm is in the wall of a tube at frame 0", both(start_inside));
+  add("teleport", "everything jumps by 5 m in one frame", both(teleport));
+  add("randomised", "particles begin anywhere in a cube", only(randomised));
+  add("flattened", "a tube begins in one plane", both(flattened));
+  add("twist", "one end of a tube is turned three times round and back", only(twist));
+  add("funnel", "a sheet falls into a funnel of sixteen capsules", only(funnel));
+  add("rotating-sphere", "a sheet on a ball that turns", variants({0.8, 0.0}, [=](double friction, std::uint64_t seed) {
+        return rotating_sphere(friction, seed, weave);
+      }));
+}
+
+} // namespace
+
 const std::vector<StabilityFamily>& stability_families() {
   static const std::vector<StabilityFamily> families = [] {
-    using Builder = std::function<StabilityScene(std::uint64_t)>;
-    const auto legs = [](std::initializer_list<double> speeds, Weave weave) {
-      std::vector<Builder> builders;
-      for (const double speed : speeds)
-        builders.push_back([=](std::uint64_t seed) {
-          FastLeg leg{speed};
-          leg.weave = weave;
-          return fast_leg(leg, seed);
-        });
-      return builders;
-    };
-    const auto cells = [](Weave weave) {
-      std::vector<Builder> builders;
-      for (const bool along : {false, true})
-        for (int k = 1; k <= 6; ++k)
-          builders.push_back([=](std::uint64_t seed) { return coarse_cells(k, along, seed, weave); });
-      return builders;
-    };
-    const auto thin_leg = [](Weave weave) {
-      return [weave](std::uint64_t seed) { return fast_leg({5.0, 0.012, 0.008, weave}, seed); };
-    };
-    const auto both = [](StabilityScene (*build)(bool, std::uint64_t)) {
-      return std::vector<Builder>{[build](std::uint64_t seed) { return build(true, seed); },
-                                  [build](std::uint64_t seed) { return build(false, seed); }};
-    };
-    return std::vector<StabilityFamily>{
-        {"fast-leg", "a leg goes through a hanging sheet at 1 to 30 m/s", legs({1, 2, 5, 10, 20, 30}, Weave::threads)},
-        {"fast-leg-mesh", "the same of a sheet of irregular triangles", legs({1, 5, 10, 30}, Weave::mesh)},
-        {"thin-leg",
-         "a leg as thin as a hand goes through cloth of 8 mm, woven and of irregular triangles",
-         {thin_leg(Weave::threads), thin_leg(Weave::mesh)}},
-        {"coarse-cells", "cells 1 to 6 times as large as the limb that pushes into them", cells(Weave::threads)},
-        {"coarse-cells-mesh", "the same of a sheet of irregular triangles", cells(Weave::mesh)},
-        {"start-inside", "an arm is in the wall of a tube at frame 0", both(start_inside)},
-        {"teleport", "everything jumps by 5 m in one frame", both(teleport)},
-        {"randomised", "particles begin anywhere in a cube", {randomised}},
-        {"flattened", "a tube begins in one plane", both(flattened)},
-        {"twist", "one end of a tube is turned three times round and back", {twist}},
-        {"funnel", "a sheet falls into a funnel of sixteen capsules", {funnel}},
-        {"rotating-sphere",
-         "a sheet on a ball that turns",
-         {[](std::uint64_t seed) { return rotating_sphere(0.8, seed); },
-          [](std::uint64_t seed) { return rotating_sphere(0.0, seed); }}},
-    };
+    std::vector<StabilityFamily> all;
+    for (const Weave weave : {Weave::threads, Weave::mesh}) add_families(weave, all);
+    return all;
   }();
   return families;
 }

@@ -48,8 +48,7 @@ struct StabilityScene {
   int looks = 1;
 };
 
-/// What a hanging sheet is made of: threads, or irregular triangles as an imported garment is (mesh_sheet.h), about as
-/// many.
+/// What the cloth is made of: threads, or irregular triangles as an imported garment is (mesh_sheet.h), about as many.
 enum class Weave { threads, mesh };
 
 /// A capsule goes through a sheet of 0.6 m that hangs from its upper row, along its normal, and stops where the sheet
@@ -61,7 +60,7 @@ struct FastLeg {
   Weave weave = Weave::threads;
 };
 StabilityScene fast_leg(const FastLeg& leg, std::uint64_t seed);
-StabilityScene fast_leg(double speed, std::uint64_t seed);
+StabilityScene fast_leg(double speed, std::uint64_t seed, Weave weave = Weave::threads);
 
 /// A capsule pushes at 1 m/s into a hanging sheet of five by five cells, at the middle of a cell, lying across the warp
 /// (or, upright, along it).
@@ -80,32 +79,34 @@ struct StartInside {
   double radius = 0.05; ///< m
   double depth = 0.03;  ///< m, how far its surface is through the wall
   bool axis_within = true;
+  Weave weave = Weave::threads;
 };
 StabilityScene start_inside(const StartInside& arm, std::uint64_t seed);
-StabilityScene start_inside(bool axis_within, std::uint64_t seed);
+StabilityScene start_inside(bool axis_within, std::uint64_t seed, Weave weave = Weave::threads);
 
 /// A skirt over hips and two legs, all of which jump by 5 m in one frame: told to the solver or not.
-StabilityScene teleport(bool told, std::uint64_t seed);
+StabilityScene teleport(bool told, std::uint64_t seed, Weave weave = Weave::threads);
 
 /// Free particles anywhere in the cube around a hanging sheet.
-StabilityScene randomised(std::uint64_t seed);
+StabilityScene randomised(std::uint64_t seed, Weave weave = Weave::threads);
 
 /// A hanging tube pressed into one plane: upright (through its axis) or level (at its waist).
-StabilityScene flattened(bool upright, std::uint64_t seed);
+StabilityScene flattened(bool upright, std::uint64_t seed, Weave weave = Weave::threads);
 
 /// A tube held at both ends; the lower one is turned three times round within 2 s, drawn up as far as the twist needs,
 /// and turned back.
-StabilityScene twist(std::uint64_t seed);
+StabilityScene twist(std::uint64_t seed, Weave weave = Weave::threads);
 
 /// A sheet falls into a funnel of sixteen capsules.
-StabilityScene funnel(std::uint64_t seed);
+StabilityScene funnel(std::uint64_t seed, Weave weave = Weave::threads);
 
 /// A sheet lies on a ball that turns about the vertical: with friction it must come to turn with it, without it must
 /// not.
-StabilityScene rotating_sphere(double friction, std::uint64_t seed);
+StabilityScene rotating_sphere(double friction, std::uint64_t seed, Weave weave = Weave::threads);
 inline constexpr double k_sphere_turn_rate = 2.0; ///< rad/s
 
-/// The variants of one scene, by the name of the command line. Builders take the seed.
+/// The variants of one scene, by the name of the command line; of irregular triangles with "-mesh" behind it. Builders
+/// take the seed.
 struct StabilityFamily {
   std::string name, what;
   std::vector<std::function<StabilityScene(std::uint64_t)>> variants;
