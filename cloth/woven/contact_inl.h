@@ -8,6 +8,7 @@
 
 #include "cloth/state/tolerances.h"
 #include "cloth/woven/arithmetic_inl.h"
+#include "cloth/woven/hits_inl.h"
 
 #include <cmath>
 #include <limits>
@@ -20,13 +21,9 @@ namespace tutu::cloth::HWY_NAMESPACE {
 /// Points nearer to an axis than this, m, have no direction from it: the rounding of coordinates of a metre or two.
 template <class T> constexpr T k_no_direction = sizeof(T) == sizeof(float) ? T(1e-6) : T(1e-12);
 
-/// What a contact moves a point of the cloth by: out of the collider along the normal n, and back along what it slipped
-/// over the moving surface, by at most friction * push (Coulomb's law on positions). `slip`: the point's way in this
-/// substep less that of the surface under it. `is_hit` lanes only; 0 in the others.
-template <class T> struct Pushed {
-  Wide3<T> moved;
-  Wide<T> push;
-};
+/// What a contact moves a point of the cloth by: out of the collider along the normal n by `push`, and back along what
+/// it slipped over the moving surface, by at most friction * push (Coulomb's law on positions). `slip`: the point's way
+/// in this substep less that of the surface under it. `is_hit` lanes only; 0 in the others.
 template <class T, class Mask>
 HWY_INLINE Pushed<T> response(Mask is_hit, Wide<T> depth, const Wide3<T>& n, const Wide3<T>& way, const Wide3<T>& slip,
                               const WovenSurface<T>& surface) {
@@ -35,68 +32,6 @@ HWY_INLINE Pushed<T> response(Mask is_hit, Wide<T> depth, const Wide3<T>& n, con
   const Wide<T> most = hn::Sqrt(dot(way, way)) + set(surface.moved + surface.push_speed_step);
   const Wide<T> push = hn::IfThenElseZero(is_hit, hn::Min(depth, most));
   return {rubbed<WideArithmetic<T>>(times(push, n), slip, n, set(surface.friction) * push), push};
-}
-
-/// A vector of hits as who watches is told of them: WovenHit, all lanes.
-template <class T> struct WideHit {
-  std::ptrdiff_t cell = 0;
-  int corners = 0;
-  std::ptrdiff_t corner[3] = {}; ///< of lane 0
-  Wide<T> weight[3], lever[3];
-  Wide3<T> point, normal;
-  Wide<T> depth;
-  Pushed<T> pushed;
-};
-
-/// Asked for by loops of their own (k_kept): in those of everybody even a branch that is never taken costs registers,
-/// 2 to 4 % of a frame's instructions.
-template <class T, class Mask> void keep(const WovenHits<T>& hits, Mask is_hit, const WideHit<T>& wide) {
-  const Tag<T> tag;
-  HWY_ALIGN T lanes[18][k_lanes];
-  int rows = 0;
-  const auto put = [&](Wide<T> v) HWY_ATTR { hn::Store(v, tag, lanes[rows++]); };
-  for (const Wide3<T>* v : {&wide.point, &wide.normal, &wide.pushed.moved}) {
-    put(v->x);
-    put(v->y);
-    put(v->z);
-  }
-  put(wide.depth);
-  put(wide.pushed.push);
-  put(hn::IfThenElseZero(is_hit, set(T(1))));
-  for (int k = 0; k < wide.corners; ++k) {
-    put(wide.weight[k]);
-    put(wide.lever[k]);
-  }
-  for (std::size_t lane = 0; lane < hn::Lanes(tag); ++lane) {
-    if (lanes[11][lane] == T(0)) continue;
-    WovenHit<T> hit;
-    const auto at = static_cast<std::ptrdiff_t>(lane);
-    hit.cell = wide.cell + at;
-    for (int axis = 0; axis < 3; ++axis) {
-      hit.point[axis] = lanes[axis][lane];
-      hit.normal[axis] = lanes[3 + axis][lane];
-      hit.moved[axis] = lanes[6 + axis][lane];
-    }
-    hit.depth = lanes[9][lane];
-    hit.push = lanes[10][lane];
-    for (int k = 0; k < wide.corners; ++k) {
-      hit.corners[k] = wide.corner[k] + at;
-      hit.weights[k] = lanes[12 + 2 * k][lane];
-      hit.levers[k] = lanes[13 + 2 * k][lane];
-    }
-    hits.keep(hits.keeper, hit);
-  }
-}
-
-/// Of free particles.
-template <bool k_kept, class T, class Mask>
-HWY_INLINE void count_particles(WovenHits<T>& hits, Mask is_hit, std::ptrdiff_t at, const Wide3<T>& x,
-                                const Wide3<T>& n, Wide<T> depth, const Pushed<T>& pushed) {
-  hits.count += static_cast<std::int64_t>(hn::CountTrue(Tag<T>(), is_hit));
-  if constexpr (k_kept) {
-    const Wide<T> one = set(T(1));
-    keep(hits, is_hit, WideHit<T>{at, 1, {at}, {one, one, one}, {one, one, one}, x, n, depth, pushed});
-  }
 }
 
 template <class T> using Forms = ClosedForms<WideArithmetic<T>>;
