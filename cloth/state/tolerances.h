@@ -62,10 +62,11 @@ inline constexpr double k_body_depth = 0.02;
 /// corner would throw the free one by any lever. Above what equal masses ask for (1.2), and those of a border (1.9).
 inline constexpr double k_longest_lever = 2.0;
 
-/// No edge of a mesh is left longer than this times its length at rest by the constraints [after Provot 1995, Deformation
-/// Constraints in a Mass-Spring Model, whose bound is 1.1 for all of cloth's life; no cloth is worn so long]. A blow that
-/// is faster than sound in the cloth (16 m/s in a soft one) else stretches it without end, however short the substeps:
-/// a limb of 30 m/s to 11 times its length. With 1.5, 2 and 3 that limb is stopped alike.
+/// What a mesh's constraint pulls its edge back to at least, over its length at rest; others of the sweep and contacts
+/// may leave it longer [after Provot 1995, Deformation Constraints in a Mass-Spring Model, whose bound is 1.1 for all
+/// of cloth's life; no cloth is worn so long]. A blow that is faster than sound in the cloth (16 m/s in a soft one)
+/// else stretches it without end, however short the substeps: a limb of 30 m/s to 11 times its length. With 1.5, 2 and
+/// 3 that limb is stopped alike.
 inline constexpr double k_longest_edge = 2.0;
 
 /// m/s. How fast cloth that began inside a collider is worked out of it: within a second out of any limb, and too slow

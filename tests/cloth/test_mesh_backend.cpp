@@ -20,6 +20,15 @@ Garment sheet(int n) {
   return build_garment(description);
 }
 
+/// Irregular triangles of about 10 cm, as large.
+Garment irregular_sheet(double thickness = Fabric().thickness) {
+  GarmentDescription description;
+  description.file = "mesh";
+  description.shape = app::mesh_sheet(5, {-0.25, 1, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, 0.25);
+  description.fabric.thickness = thickness;
+  return build_garment(description);
+}
+
 /// A ball that swings under a falling sheet.
 struct Ball {
   test::Surface surface = test::sphere_surface(0.15, 3);
@@ -74,10 +83,7 @@ double deepest(const Garment& garment, const Solver& solver, const proxies::Coll
 }
 
 TEST(MeshBackend, EdgesAndFacesKeepABallOutBetweenParticles) {
-  GarmentDescription irregular;
-  irregular.file = "mesh";
-  irregular.shape = app::mesh_sheet(5, {-0.25, 1, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, 0.25);
-  for (const Garment& garment : {sheet(6), build_garment(irregular)}) // cells of 10 cm on a ball of 15
+  for (const Garment& garment : {sheet(6), irregular_sheet()}) // cells of 10 cm on a ball of 15
     for (const SolverKind kind : {SolverKind::xpbd, SolverKind::mass_spring}) {
       SCOPED_TRACE(std::string(name_of(kind)) + (garment.rows > 0 ? ", grid" : ", mesh"));
       const auto run = [&](ContactFeatures features) {
@@ -114,11 +120,7 @@ TEST(MeshBackend, BodiesThatNoSceneShouldHaveGiveNumbers) {
   for (const test::Surface& surface : {flat, crossed, touching, turned})
     for (const double thickness : {0.0, 0.004, 0.5})
       for (const SolverKind kind : {SolverKind::xpbd, SolverKind::mass_spring}) {
-        GarmentDescription description;
-        description.file = "sheet";
-        description.shape = app::mesh_sheet(5, {-0.25, 1, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, 0.25);
-        description.fabric.thickness = thickness;
-        const Garment garment = build_garment(description);
+        const Garment garment = irregular_sheet(thickness);
         Ball body;
         body.surface = surface;
         body.start = body.end = surface.positions;
