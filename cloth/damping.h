@@ -28,8 +28,8 @@ struct DampedStep {
 /// time. The direction that they end with would take h w^2 / 2 from a swing w of a fold or of the whole garment, and
 /// spin from what turns. It is the one for what the substep steps over (k_most_turn, k_most_pull).
 ///
-/// xpbd of any mesh uses neither: its passes do not come to an end, and what they leave grows where a substep is to
-/// take back less; it damps like h.
+/// xpbd of any mesh takes back all of C: its passes do not come to an end, and what they leave grows where a substep is
+/// to take back less. What h lacks of t dampers take from its velocities (cloth/mesh_xpbd.h).
 class Damping {
 public:
   explicit Damping(const Garment& garment);

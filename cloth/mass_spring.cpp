@@ -2,14 +2,15 @@
 
 #include "cloth/detail/solver_parts.h"
 #include "cloth/garment/springs.h"
+#include "cloth/garment/vibration.h"
 
 #include <algorithm>
 
 namespace tutu::cloth {
 
 MassSpring::MassSpring(const Garment& garment, const SolverOptions& options)
-    : garment_(&garment), pinned_(pinned_flags(garment)), contacts_(garment.fabric.contact_offset(), options.swept),
-      triangle_contacts_(garment, options) {
+    : garment_(&garment), vibration_(fastest_vibration(garment)), pinned_(pinned_flags(garment)),
+      contacts_(garment.fabric.contact_offset(), options.swept), triangle_contacts_(garment, options) {
   reset(garment.rest_positions);
 }
 
@@ -25,8 +26,17 @@ void MassSpring::restore(const Particles& state) {
   renew_forces();
 }
 
+double MassSpring::damping(double drag, double h) const {
+  const double w2 = vibration_ * vibration_;
+  if (!(w2 > 0.0)) return 0.0;
+  const double borne = ((4.0 - h * h * w2) / (2.0 * h) - drag) / w2;
+  return std::clamp(0.5 * borne, 0.0, garment_->fabric.damping);
+}
+
 void MassSpring::integrate(const FrameInput& input, double h) {
   const double drag = garment_->fabric.drag + input.extra_drag;
+  if (const double time = damping(drag, h); time > 0.0)
+    add_damping_forces(*garment_, particles_.positions, particles_.velocities, time, forces_);
   for (int i = 0; i < particles_.count(); ++i) {
     if (pinned_[i]) continue;
     Vec3& v = particles_.velocities[i];

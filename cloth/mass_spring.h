@@ -11,9 +11,12 @@
 
 namespace tutu::cloth {
 
-/// A substep h, with forces at the positions it starts from:
+/// A substep h, with forces of springs and dampers at the positions and velocities it starts from:
 ///   v less what the air takes (cloth/air/air.h, where the fabric has it),
 ///   v += h (F/m + g - drag v),  x += h v,  pins to their targets, collisions, seams, then forces and the check.
+/// Dampers are the fabric's as far as the step bears them: beside springs that vibrate at w and drag c, semi-implicit
+/// Euler with dampers of time t stands while h^2 w^2 + 2 h (c + t w^2) < 4 [Jury's test, as in
+/// src/study/stability/step_bound.h]; t is at most half of that, and nothing where springs alone are at their limit.
 /// A collision puts the particle, or the point of a triangle, on the surface and cancels its normal velocity,
 /// v -= (v . n) n, without friction [INF585 report 2021, collisions].
 class MassSpring final : public Solver {
@@ -30,10 +33,12 @@ public:
 
 private:
   void integrate(const FrameInput& input, double h);
-  bool renew_forces(); ///< false where a structural spring is broken
+  double damping(double drag, double h) const; ///< s, of dampers that a step of h s bears
+  bool renew_forces();                         ///< false where a structural spring is broken
 
   const Garment* garment_;
   Particles particles_;
+  double vibration_ = 0.0;   ///< rad/s, the fastest of the springs
   std::vector<Vec3> forces_; ///< N, of the springs at the present positions
   std::vector<std::uint8_t> pinned_;
   ContactSearch contacts_;

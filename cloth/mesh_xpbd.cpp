@@ -56,6 +56,7 @@ template <class Scalar> void MeshXpbd<Scalar>::reset(std::span<const Vec3> posit
   particles_.positions.assign(positions.begin(), positions.end());
   particles_.velocities.assign(positions.size(), Vec3::Zero());
   before_ = particles_.positions;
+  halfway_.resize(positions.size());
 }
 
 template <class Scalar> void MeshXpbd<Scalar>::restore(const Particles& state) {
@@ -99,7 +100,8 @@ template <class Scalar> void MeshXpbd<Scalar>::solve(const Hinge& hinge, Scalar 
   const Scalar wc = inverse_masses_[hinge.c], wd = inverse_masses_[hinge.d];
   const Scalar give = wa * bent.at_a.squaredNorm() + wb * bent.at_b.squaredNorm() + wc * bent.at_c.squaredNorm() +
                       wd * bent.at_d.squaredNorm();
-  const Scalar step = (hinge.rest_angle - bent.angle) / (give + hinge.compliance * per_h2); // once a substep: lambda 0
+  const Scalar step =
+      (hinge.rest_angle - bent.angle()) / (give + hinge.compliance * per_h2); // once a substep: lambda 0
   x_[hinge.a] += (wa * step) * bent.at_a;
   x_[hinge.b] += (wb * step) * bent.at_b;
   x_[hinge.c] += (wc * step) * bent.at_c;
@@ -139,6 +141,42 @@ template <class Scalar> void MeshXpbd<Scalar>::solve_constraints(double h, bool 
 
   for (std::size_t i = 0; i < x_.size(); ++i)
     if (!pinned_[i]) particles_.positions[i] += (x_[i] - predicted_[i]).template cast<double>();
+}
+
+template <class Scalar>
+template <std::size_t count>
+void MeshXpbd<Scalar>::damp(const Damper<count>& damper, double time_per_h) {
+  std::vector<Vec3>& v = particles_.velocities;
+  double rate = 0.0, give = 0.0;
+  for (std::size_t k = 0; k < count; ++k) {
+    rate += damper.gradient[k].dot(v[damper.particles[k]]);
+    give += inverse_masses_[damper.particles[k]] * damper.gradient[k].dot(damper.along[k]);
+  }
+  if (!(give > 0.0)) return;
+  const double w2 = damper.elastic * give, w4 = w2 * w2;                 // powers of w h, w of its own vibration
+  const double strength = time_per_h * damper.elastic / (1.0 + w4 * w4); // a low-pass filter of order 4
+  const double impulse = std::min(strength, 1.0 / give) * rate;
+  for (std::size_t k = 0; k < count; ++k)
+    v[damper.particles[k]] -= inverse_masses_[damper.particles[k]] * impulse * damper.along[k];
+}
+
+template <class Scalar> void MeshXpbd<Scalar>::damp(double h, bool up_first) {
+  const double left = garment_->fabric.damping / h - 1.0;
+  if (left <= 0.0) return;
+  const std::vector<Vec3>& x = particles_.positions;
+  for (std::size_t i = 0; i < halfway_.size(); ++i) halfway_[i] = 0.5 * (x[i] + before_[i]);
+  for (const Hinge& hinge : hinges_) {
+    const auto bent = dihedral<double>(halfway_[hinge.a], halfway_[hinge.b], halfway_[hinge.c], halfway_[hinge.d]);
+    const std::array<Vec3, 4> gradient = {bent.at_a, bent.at_b, bent.at_c, bent.at_d};
+    damp<4>({{hinge.a, hinge.b, hinge.c, hinge.d}, gradient, gradient, h * h / hinge.compliance}, left);
+  }
+  const auto damp_stretch = [&](const Stretch& stretch) {
+    const Vec3 was = (halfway_[stretch.j] - halfway_[stretch.i]).normalized();
+    const Vec3 is = (x[stretch.j] - x[stretch.i]).normalized();
+    damp<2>({{stretch.i, stretch.j}, {-was, was}, {-is, is}, h * h / stretch.compliance}, left);
+  };
+  if (up_first) std::for_each(stretches_.begin(), stretches_.end(), damp_stretch);
+  else std::for_each(stretches_.rbegin(), stretches_.rend(), damp_stretch);
 }
 
 template <class Scalar> bool MeshXpbd<Scalar>::is_broken() const {
@@ -192,6 +230,7 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
       v = (particles_.positions[i] - before_[i]) / h;
       if (const double speed = v.norm(); speed > k_fastest_particle) v *= k_fastest_particle / speed;
     }
+    damp(h, substep % 2 == 0);
     const bool broken = is_broken();
     time = lap(time, times_.cloth);
     if (broken) return find_trouble(now, {});

@@ -10,9 +10,12 @@ namespace tutu::cloth {
 /// Angle over the edge from a to b and its gradients, rad and rad/m.
 template <class Scalar> struct Dihedral {
   using Vector = Eigen::Matrix<Scalar, 3, 1>;
-  Scalar angle = 0; ///< in (-pi, pi], 0 when flat; positive when c and d are bent towards the side that n points away
-                    ///< from, with n = (b - a) x (c - a)
+  Scalar sine = 0, cosine = 1; ///< of the angle, times one number > 0
   Vector at_a = Vector::Zero(), at_b = Vector::Zero(), at_c = Vector::Zero(), at_d = Vector::Zero();
+
+  /// In (-pi, pi], 0 when flat; positive when c and d are bent towards the side that n points away from, with n =
+  /// (b - a) x (c - a).
+  Scalar angle() const { return std::atan2(sine, cosine); }
 };
 
 /// c and d are the corners opposite of the edge. The gradient at a corner is along its triangle's normal, one over its
@@ -28,8 +31,8 @@ Dihedral<Scalar> dihedral(const A& a, const B& b, const C& c, const D& d) {
   if (!(n1_squared > 0) || !(n2_squared > 0)) return result;
   const Scalar length = std::sqrt(squared);
   // |n1| |n2| times sine and cosine: n1 x n2 is along the edge, for both are across it.
-  const Scalar sine = -length * n1.dot(to_d), cosine = n1.dot(n2);
-  result.angle = std::atan2(sine, cosine);
+  result.sine = -length * n1.dot(to_d);
+  result.cosine = n1.dot(n2);
   result.at_c = (-length / n1_squared) * n1;
   result.at_d = (-length / n2_squared) * n2;
   const Scalar along_c = to_c.dot(edge) / squared, along_d = to_d.dot(edge) / squared;

@@ -62,7 +62,7 @@ std::vector<Bend> build_bends(const Garment& garment) {
     const auto& x = garment.rest_positions;
     const double area = triangle_area(x[bend.a], x[bend.b], x[bend.c]) + triangle_area(x[bend.a], x[bend.b], x[bend.d]);
     bend.stiffness = garment.fabric.bend * (x[bend.a] - x[bend.b]).squaredNorm() / area;
-    if (garment.pressed) bend.rest_angle = dihedral<double>(x[bend.a], x[bend.b], x[bend.c], x[bend.d]).angle;
+    if (garment.pressed) bend.rest_angle = dihedral<double>(x[bend.a], x[bend.b], x[bend.c], x[bend.d]).angle();
     bends.push_back(bend);
   }
   return bends;

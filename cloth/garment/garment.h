@@ -72,7 +72,7 @@ struct Fabric {
   double shear = 10.0;       ///< N/m
   double bend = 1e-5;        ///< N m, the bending rigidity B (moment per metre of width and unit curvature)
   double bend_springs = 2.0; ///< N/m, of the springs between particles two apart: the report's stand-in for bend
-  double damping = 0.002;    ///< s: stress is stiffness * (strain + damping * its rate); threads under xpbd
+  double damping = 0.002;    ///< s: stress is stiffness * (strain + damping * its rate)
   double drag = 0.5;         ///< 1/s: takes drag * m * v, a stand-in for the air; 0 beside it
   std::optional<Air> air = {};
   double thickness = 0.004; ///< full gap of the sheet, m: particles keep half of it from colliders,

@@ -22,6 +22,19 @@ std::optional<int> add_spring_forces(const Garment& garment, std::span<const Vec
   return first_bad;
 }
 
+void add_damping_forces(const Garment& garment, std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                        double time, std::span<Vec3> forces) {
+  for (const Spring& spring : garment.springs) {
+    const Vec3 d = positions[spring.j] - positions[spring.i];
+    const double squared = d.squaredNorm();
+    if (!(squared > 0.0)) continue; // two particles in one place: no direction, no force
+    const double rate = (velocities[spring.j] - velocities[spring.i]).dot(d); // of d^2 / 2
+    const Vec3 force = (spring.stiffness * time * rate / squared) * d;
+    forces[spring.i] += force;
+    forces[spring.j] -= force;
+  }
+}
+
 double elastic_energy(const Garment& garment, std::span<const Vec3> positions) {
   double energy = 0.0;
   for (const Spring& spring : garment.springs) {

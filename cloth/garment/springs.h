@@ -13,6 +13,11 @@ namespace tutu::cloth {
 /// (1 + k_diverged_stretch) of its rest length.
 std::optional<int> add_spring_forces(const Garment& garment, std::span<const Vec3> positions, std::span<Vec3> forces);
 
+/// forces += those of a damper K `time` (N s/m) beside each spring at `positions`: on i K time ((v_j - v_i) . n) n with
+/// n = d/|d|, the opposite on j. What falls or turns as a whole is not damped.
+void add_damping_forces(const Garment& garment, std::span<const Vec3> positions, std::span<const Vec3> velocities,
+                        double time, std::span<Vec3> forces);
+
 /// Sum of K (|d| - L)^2 / 2 over all springs, J. The forces are its negative gradient.
 double elastic_energy(const Garment& garment, std::span<const Vec3> positions);
 

@@ -63,6 +63,40 @@ TEST(MassSpring, SpringForcesKeepMomentumAndAngularMomentum) {
   EXPECT_LT(torque.norm(), 1e-12);
 }
 
+TEST(MassSpring, DampersTakeEnergyAndNoMomentum) {
+  const Garment garment = sheet(8);
+  const std::vector<Vec3> at = shaken(garment.rest_positions, 0.03, 3);
+  const std::vector<Vec3> v = shaken(std::vector<Vec3>(at.size(), Vec3::Zero()), 1.0, 4);
+  std::vector<Vec3> forces(at.size(), Vec3::Zero());
+  constexpr double k_time = 0.002;
+  add_damping_forces(garment, at, v, k_time, forces);
+  Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
+  double power = 0.0, expected = 0.0;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    sum += forces[i];
+    torque += at[i].cross(forces[i]);
+    power += v[i].dot(forces[i]);
+  }
+  for (const Spring& spring : garment.springs) {
+    const double rate = (v[spring.j] - v[spring.i]).dot((at[spring.j] - at[spring.i]).normalized());
+    expected -= spring.stiffness * k_time * rate * rate;
+  }
+  EXPECT_LT(sum.norm(), 1e-12);
+  EXPECT_LT(torque.norm(), 1e-12);
+  EXPECT_LT(expected, 0.0);
+  EXPECT_NEAR(power, expected, 1e-12 * -expected);
+}
+
+TEST(MassSpring, DampersLeaveWhatMovesAndTurnsAsAWhole) {
+  const Garment garment = sheet(8);
+  const std::vector<Vec3> at = shaken(garment.rest_positions, 0.03, 5);
+  std::vector<Vec3> v;
+  for (const Vec3& x : at) v.push_back(Vec3(1, -2, 3) + Vec3(4, 5, -6).cross(x));
+  std::vector<Vec3> forces(at.size(), Vec3::Zero());
+  add_damping_forces(garment, at, v, 0.002, forces);
+  for (const Vec3& force : forces) EXPECT_LT(force.norm(), 1e-12);
+}
+
 TEST(MassSpring, FreeFallIsThatOfTheScheme) {
   Fabric fabric;
   fabric.drag = 0.0;

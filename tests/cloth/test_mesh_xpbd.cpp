@@ -48,7 +48,7 @@ double energy_of(const Garment& garment, const Particles& particles) {
   double energy = elastic_energy(garment, particles.positions);
   const auto& x = particles.positions;
   for (const Bend& bend : build_bends(garment)) {
-    const double turn = dihedral<double>(x[bend.a], x[bend.b], x[bend.c], x[bend.d]).angle - bend.rest_angle;
+    const double turn = dihedral<double>(x[bend.a], x[bend.b], x[bend.c], x[bend.d]).angle() - bend.rest_angle;
     energy += 0.5 * bend.stiffness * turn * turn;
   }
   for (int i = 0; i < garment.particle_count(); ++i)

@@ -225,7 +225,9 @@ const std::vector<AnalyticFamily>& analytic_families() {
       {"pendulum", "period and energy of a swing", pendulum},
       {"catenary", "the sag of a hanging band", catenary},
       {"hang", "how far a sheet gives by its own weight", hang},
-      {"swing", "how fast sheets come to rest, which substeps must not change", swing},
+      {"swing", "how fast sheets come to rest, which substeps must not change",
+       [](const RunSettings& setup) { return swing(setup); }},
+      {"swing-mesh", "swing, of irregular triangles", [](const RunSettings& setup) { return swing(setup, true); }},
       {"energy", "a shaken sheet left alone never gains energy", energy},
   };
   return families;

@@ -1,5 +1,6 @@
 #include "src/study/bench/swing.h"
 
+#include "src/study/bench/mesh_sheet.h"
 #include "src/study/bench/stand.h"
 
 #include <algorithm>
@@ -13,6 +14,20 @@ namespace {
 
 constexpr double k_top = 1.0, k_side = 0.6; // m
 constexpr int k_particles = 20;             // a side
+const Vec3 k_corner(-0.5 * k_side, k_top, 0.0), k_across(k_side, 0.0, 0.0), k_down(0.0, -k_side, 0.0);
+
+cloth::Garment woven_sheet() {
+  return sheet({k_particles, k_particles, k_corner, k_across, k_down}, airless(40.0), {{"stage", 0, 0, 0, -1}});
+}
+
+cloth::Garment irregular_sheet() {
+  cloth::GarmentDescription description;
+  description.name = "sheet";
+  description.shape = mesh_sheet(k_particles - 1, k_corner, k_across, k_down, 0.3);
+  description.fabric = airless(40.0);
+  description.attachments = {{.joint = "stage", .above = k_top - 1e-6}};
+  return cloth::build_garment(description);
+}
 
 using Shape = std::function<Vec3(const Vec3&)>; // where a place at rest is let go
 
@@ -22,10 +37,8 @@ struct Decay {
 };
 
 /// Lets a sheet go from where `shape` puts what hangs at rest.
-Decay decay_of(const Shape& shape, double seconds, const RunSettings& setup) {
-  const cloth::Garment garment =
-      sheet({k_particles, k_particles, {-0.5 * k_side, k_top, 0}, {k_side, 0, 0}, {0, -k_side, 0}}, airless(40.0),
-            {{"stage", 0, 0, 0, -1}});
+Decay decay_of(const Shape& shape, double seconds, bool of_triangles, const RunSettings& setup) {
+  const cloth::Garment garment = of_triangles ? irregular_sheet() : woven_sheet();
   Stand stand(garment, setup);
   stand.input().extra_drag = 8.0;
   for (int frame = 0; frame < 600; ++frame)
@@ -69,13 +82,13 @@ double spin_kept(const RunSettings& setup) {
 
 } // namespace
 
-std::vector<AnalyticFigure> swing(const RunSettings& setup) {
+std::vector<AnalyticFigure> swing(const RunSettings& setup, bool of_triangles) {
   struct Mode {
     const char* name;
     std::function<Decay(const RunSettings&)> decay;
   };
-  const auto let_go = [](double seconds, const Shape& shape) {
-    return [=](const RunSettings& s) { return decay_of(shape, seconds, s); };
+  const auto let_go = [=](double seconds, const Shape& shape) {
+    return [=](const RunSettings& s) { return decay_of(shape, seconds, of_triangles, s); };
   };
   constexpr double k_angle = 80.0 * std::numbers::pi / 180.0;
   const Mode modes[] = {
@@ -88,7 +101,8 @@ std::vector<AnalyticFigure> swing(const RunSettings& setup) {
       {"shear",
        let_go(2.0, [](const Vec3& p) { return Vec3(p.x() + 0.02 * (k_top - p.y()) / k_side, p.y(), p.z()); })}};
   RunSettings fine = setup;
-  fine.substeps = k_swing_substeps;
+  fine.substeps = std::max(k_swing_substeps, 2 * setup.substeps);
+  fine.double_precision = true; // in 96 substeps float's rounding damps too
   std::vector<AnalyticFigure> figures;
   for (const Mode& mode : modes) {
     const Decay decay = mode.decay(setup), truth = mode.decay(fine);

@@ -1,5 +1,6 @@
 #include "src/study/stability/scene_setting.h"
 
+#include "cloth/garment/vibration.h"
 #include "cloth/solver.h"
 #include "proxies/distance/signed_distance.h"
 #include "proxies/motion/collider_set.h"
@@ -27,8 +28,8 @@ GarmentSetting garment_setting(const cloth::Garment& garment, const RunSettings&
   // Frequencies go with 1 / cell: one patch tells all.
   Patch patch;
   patch.fabric = garment.fabric;
-  const double vibration = fastest_vibration(garment);
-  if (vibration > 0.0) setting.stiffest_cell = patch.cell * fastest_vibration(garment_of(patch)) / vibration;
+  const double vibration = cloth::fastest_vibration(garment);
+  if (vibration > 0.0) setting.stiffest_cell = patch.cell * cloth::fastest_vibration(garment_of(patch)) / vibration;
   for (int k = 0; k < garment.structural_count; ++k)
     setting.largest_cell = std::max(setting.largest_cell, garment.springs[k].rest_length);
   const std::vector<std::uint8_t> pinned = cloth::pinned_flags(garment);

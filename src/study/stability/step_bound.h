@@ -5,17 +5,13 @@
 
 namespace tutu::app {
 
-/// rad/s, the square root of the largest eigenvalue of M^-1 K of the garment at rest, where K = sum k n n^T over its
-/// springs. Pinned particles stand still, the sides of a seam are one particle, as in the solver. By Lanczos: never
-/// above the true value, and less than a thousandth below it on woven cloth. 0 without springs.
-double fastest_vibration(const cloth::Garment& garment);
-
 /// s. A step of semi-implicit Euler, v += h (-w^2 x - c v), x += h v, has determinant 1 - h c and trace
 /// 2 - h c - h^2 w^2, so both of its eigenvalues stay within the unit circle while h^2 w^2 + 2 h c < 4 [Jury's test].
 /// `vibration` w > 0 in rad/s, `drag` c >= 0 in 1/s.
 double largest_stable_step(double vibration, double drag);
 
-/// s, of the garment's own springs and drag under mass_spring; infinite where nothing can vibrate.
+/// s, of the garment's own springs and drag under mass_spring, which damps no more than its step bears; infinite where
+/// nothing can vibrate.
 double largest_stable_step(const cloth::Garment& garment);
 
 } // namespace tutu::app

@@ -30,16 +30,16 @@ TEST(Dihedral, GradientsAreThoseOfFiniteDifferences) {
     std::array<Vec3, 4> x;
     for (Vec3& p : x) p = {gauss(random), gauss(random), gauss(random)};
     const auto at = dihedral<double>(x[0], x[1], x[2], x[3]);
-    if (std::abs(at.angle) > 3.0) continue; // the angle jumps at pi
-    folded += std::abs(at.angle) > 0.5 * std::numbers::pi;
+    if (std::abs(at.angle()) > 3.0) continue; // the angle jumps at pi
+    folded += std::abs(at.angle()) > 0.5 * std::numbers::pi;
     const std::array<Vec3, 4> gradients = {at.at_a, at.at_b, at.at_c, at.at_d};
     for (int corner = 0; corner < 4; ++corner)
       for (int axis = 0; axis < 3; ++axis) {
         auto ahead = x, behind = x;
         ahead[corner][axis] += step;
         behind[corner][axis] -= step;
-        const double slope = (dihedral<double>(ahead[0], ahead[1], ahead[2], ahead[3]).angle -
-                              dihedral<double>(behind[0], behind[1], behind[2], behind[3]).angle) /
+        const double slope = (dihedral<double>(ahead[0], ahead[1], ahead[2], ahead[3]).angle() -
+                              dihedral<double>(behind[0], behind[1], behind[2], behind[3]).angle()) /
                              (2.0 * step);
         const double tolerance = 1e-5 * (1.0 + std::pow(gradients[corner].norm(), 3));
         EXPECT_NEAR(gradients[corner][axis], slope, tolerance) << "trial " << trial << " corner " << corner;
@@ -50,12 +50,12 @@ TEST(Dihedral, GradientsAreThoseOfFiniteDifferences) {
 
 TEST(Dihedral, IsZeroWhenFlatAndOddInTheSide) {
   const Vec3 a(0, 0, 0), b(1, 0, 0), c(0.3, 1, 0);
-  EXPECT_EQ(dihedral<double>(a, b, c, Vec3(0.6, -1, 0)).angle, 0.0);
-  const double up = dihedral<double>(a, b, c, Vec3(0.6, -1, 0.5)).angle;
-  EXPECT_NEAR(up, -dihedral<double>(a, b, c, Vec3(0.6, -1, -0.5)).angle, 1e-15);
+  EXPECT_EQ(dihedral<double>(a, b, c, Vec3(0.6, -1, 0)).angle(), 0.0);
+  const double up = dihedral<double>(a, b, c, Vec3(0.6, -1, 0.5)).angle();
+  EXPECT_NEAR(up, -dihedral<double>(a, b, c, Vec3(0.6, -1, -0.5)).angle(), 1e-15);
   EXPECT_NEAR(std::abs(up), std::atan(0.5), 1e-15);
   const auto none = dihedral<double>(a, b, Vec3(0.5, 0, 0), Vec3(0.6, -1, 0.5));
-  EXPECT_EQ(none.angle, 0.0);
+  EXPECT_EQ(none.angle(), 0.0);
   EXPECT_EQ(none.at_c, Vec3::Zero());
 }
 
@@ -80,7 +80,7 @@ double rolled_energy(const Garment& garment, double kappa) {
   for (Vec3& p : x) p = Vec3(std::sin(kappa * p.x()) / kappa, p.y() + (1.0 - std::cos(kappa * p.x())) / kappa, p.z());
   double energy = 0.0;
   for (const Bend& bend : build_bends(garment)) {
-    const double angle = dihedral<double>(x[bend.a], x[bend.b], x[bend.c], x[bend.d]).angle;
+    const double angle = dihedral<double>(x[bend.a], x[bend.b], x[bend.c], x[bend.d]).angle();
     energy += 0.5 * bend.stiffness * angle * angle;
   }
   return energy;

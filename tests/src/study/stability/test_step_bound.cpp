@@ -1,5 +1,6 @@
 // The closed form of mass_spring's largest step, against dense matrices and against the solver itself.
 #include "cloth/garment/springs.h"
+#include "cloth/garment/vibration.h"
 #include "src/study/stability/step_bound.h"
 #include "src/study/stability/trials.h"
 
@@ -50,7 +51,7 @@ TEST(StepBound, TheFastestVibrationIsThatOfTheDenseMatrix) {
   for (const double stretch : {40.0, 1000.0}) {
     const cloth::Garment garment = garment_of(patch_of(stretch, 0.02));
     const double dense = dense_fastest_vibration(garment);
-    EXPECT_NEAR(fastest_vibration(garment), dense, 1e-3 * dense);
+    EXPECT_NEAR(cloth::fastest_vibration(garment), dense, 1e-3 * dense);
   }
 }
 
@@ -77,13 +78,13 @@ TEST(StepBound, ASeamIsOneParticle) {
   shape.rows = shape.columns = 9;
   shape.rings = {{1.0, 0.2, 0.2, 0, 0}, {0.7, 0.2, 0.2, 0, 0}};
   description.shape = shape;
-  const double shut = fastest_vibration(cloth::build_garment(description));
+  const double shut = cloth::fastest_vibration(cloth::build_garment(description));
   std::get<cloth::TubeShape>(description.shape).columns = 10; // the last lies on the first
   std::get<cloth::TubeShape>(description.shape).seam = 1.0;
   const cloth::Garment sewn = cloth::build_garment(description);
   ASSERT_EQ(sewn.seams.size(), 9u);
   // The same cloth but for bending across the seam, and its edge that is there twice.
-  EXPECT_NEAR(fastest_vibration(sewn), shut, 0.05 * shut);
+  EXPECT_NEAR(cloth::fastest_vibration(sewn), shut, 0.05 * shut);
 }
 
 TEST(StepBound, DragShortensTheStepAsTheSchemeSays) {
