@@ -102,6 +102,9 @@ struct LongestThread {
   int i = 0, j = 0;    ///< its particles
 };
 LongestThread longest_thread(const MeasuredParts& parts, std::span<const Vec3> positions);
+inline Vec3 middle_of(const LongestThread& thread, std::span<const Vec3> positions) {
+  return 0.5 * (positions[thread.i] + positions[thread.j]);
+}
 
 /// Mean |x(f+1) - 2 x(f) + x(f-1)| / frame^2 over free particles, m/s2.
 double jitter_of(const MeasuredParts& parts, std::span<const Vec3> before_last, std::span<const Vec3> last,

@@ -2,11 +2,13 @@
 // cloth says it last of all.
 #pragma once
 
+#include "proxies/collider.h"
 #include "src/measure/cloth_depths.h"
 #include "src/run/session.h"
 
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,11 +26,18 @@ struct DeepestPoint {
 };
 DeepestPoint deepest_of(const ClothDepths& depths);
 
+/// Which proxies a place lies by, in words: "between A and B" where the two nearest face each other across it, else "by
+/// A"; "" farther than k_by from all. `proxies`: in the order of the colliders.
+std::string place_among(const Vec3& place, std::span<const proxies::Capsule> colliders,
+                        const std::vector<proxies::Proxy>& proxies);
+inline constexpr double k_by = 0.05; ///< m
+
 /// A garment as a run left it.
 struct GarmentEnd {
   std::string garment;
   cloth::LongestThread longest;
   std::optional<DeepestPoint> in_proxies, in_body; ///< where that was measured
+  std::string longest_at = {};                     ///< place_among(), of its middle; "" where that was not asked
 };
 
 struct RunEnd {

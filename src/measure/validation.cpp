@@ -352,8 +352,13 @@ private:
       const std::vector<Vec3>& positions = cloth_.positions[last][g];
       ClothDepths depths;
       probes_[g].measure(state.body, positions, depths);
+      const cloth::LongestThread longest = cloth::longest_thread(probes_[g].parts(), positions);
       end.garments.push_back(
-          {scene_->garments[g].name, cloth::longest_thread(probes_[g].parts(), positions), {}, deepest_of(depths)});
+          {scene_->garments[g].name,
+           longest,
+           {},
+           deepest_of(depths),
+           place_among(cloth::middle_of(longest, positions), state.posed.colliders(), state.posed.proxies())});
     }
     return end;
   }

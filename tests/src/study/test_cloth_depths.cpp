@@ -160,6 +160,24 @@ TEST(RunEnd, SaysWhatIsTooLongOrTooDeep) {
   x[0].x() -= 1.0; // held, as its neighbour in the row is; the thread below it is free
   EXPECT_THAT(both.warning(), ::testing::HasSubstr("71 - 80"));
   EXPECT_THAT(end(0.001).warning(), ::testing::HasSubstr("particles 0 - 9"));
+  RunEnd placed = end(0.001);
+  placed.garments[0].longest_at = "between arm and torso";
+  EXPECT_THAT(placed.warning(), ::testing::HasSubstr("(particles 0 - 9, between arm and torso)"));
+  EXPECT_EQ(placed.json().at("garments").at(0).at("thread_at"), "between arm and torso");
+}
+
+TEST(RunEnd, SaysBetweenWhichProxiesAPlaceIs) {
+  const auto upright = [](double x) { return Capsule{{x, 0, 0}, {x, 1, 0}, 0.1}; };
+  const std::vector<Capsule> colliders = {upright(0.0), upright(0.23), upright(-0.04)};
+  std::vector<proxies::Proxy> proxies(3);
+  proxies[0].name = "torso";
+  proxies[1].name = "arm";
+  proxies[2].name = "back";
+  EXPECT_EQ(place_among({0.12, 0.5, 0}, colliders, proxies), "between arm and torso") << "the nearest first";
+  EXPECT_EQ(place_among({0.11, 0.5, 0}, colliders, proxies), "between torso and arm");
+  EXPECT_EQ(place_among({0.34, 0.5, 0}, colliders, proxies), "by arm");
+  EXPECT_EQ(place_among({0.39, 0.5, 0}, colliders, proxies), "");
+  EXPECT_EQ(place_among({0, 0, 0}, {}, {}), "");
 }
 
 } // namespace
