@@ -69,6 +69,14 @@ inline constexpr double k_longest_lever = 2.0;
 /// 3 that limb is stopped alike.
 inline constexpr double k_longest_edge = 2.0;
 
+/// Of its length at rest: no contact makes a thread of pinched cloth longer than that
+/// (cloth/contact/between_colliders.h).
+inline constexpr double k_pinched_thread = 1.1;
+
+/// Of the way along the cloth: how far from a held particle within a collider cloth can reach out of it. Less than 1,
+/// since threads that are straight already pull.
+inline constexpr double k_pinched_reach = 0.8;
+
 /// m/s. How fast cloth that began inside a collider is worked out of it: within a second out of any limb, and too slow
 /// to be thrown.
 inline constexpr double k_push_out_speed = 1.0;

@@ -76,8 +76,8 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, cons
     const Wide3<T> q = minus_times<T>(d, t, c.axis);
     const Wide<T> squared = dot(q, q), length = k_tapered ? length_of<T>(q) : squared;
     const Wide<T> beyond = k_tapered ? length - radius : squared;
-    least = hn::Min(least, beyond);
     const auto is_free = load(row_of(sheet.own_inverse_mass, rows.block, row) + lane) > hn::Zero(tag);
+    least = hn::Min(least, hn::IfThenElse(is_free, beyond, far));
     const auto is_hit = hn::And(is_free, k_tapered ? beyond < hn::Zero(tag) : squared < squared_radius);
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide<T> from_axis = k_tapered ? length : length_of<T>(q);
@@ -113,8 +113,8 @@ T contact_plane_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const 
   for_rows(sheet, rows.block, rows.first, rows.last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const Wide3<T> x = load(sheet.x, at);
     const Wide<T> height = Forms<T>::height(n, offset, x);
-    least = hn::Min(least, height);
     const auto is_free = load(row_of(sheet.own_inverse_mass, rows.block, row) + lane) > hn::Zero(tag);
+    least = hn::Min(least, hn::IfThenElse(is_free, height, far));
     const auto is_hit = hn::And(is_free, height < hn::Zero(tag));
     if (HWY_LIKELY(hn::AllFalse(tag, is_hit))) return;
     const Wide3<T> way = minus(x, load(sheet.was, at));

@@ -8,9 +8,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tutu::cloth {
 namespace {
+
+/// m. Where cloth begins that deep in a collider it is looked at whether it is pinched; in the dance nothing ever does.
+constexpr double k_left_deep = 0.003;
+
+// Tile::pinched: substeps that a tile is settled particle by particle after it was pinched, those that one beside it
+// is, and when it is looked at whether it has to be.
+constexpr int k_pinched_for = 16, k_beside_pinched = 9, k_suspect = 1;
 
 constexpr int k_tile_rows = 8; // of 16 particles: small enough for few colliders, large enough to ask once for many
 
@@ -22,7 +30,7 @@ template <class T> void copy(const Vec3& from, T* to) {
 
 template <class T>
 WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& options, const WovenSheet<T>& sheet)
-    : offset_(garment.fabric.contact_offset()), features_(options.features), swept_(options.swept) {
+    : offset_(garment.fabric.contact_offset()), features_(options.features), swept_(options.swept), garment_(&garment) {
   const WovenSheetView<T>& view = sheet.view();
   for (int block = 0; block < view.blocks; ++block)
     for (int first = 0; first < view.rows; first += k_tile_rows) {
@@ -30,6 +38,7 @@ WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& opt
       tile.rows = {block, first, std::min(first + k_tile_rows, view.rows)};
       tiles_.push_back(tile);
     }
+  tiles_per_block_ = tiles_.size() / static_cast<std::size_t>(view.blocks);
   const Weave& weave = sheet.weave();
   struct Row {
     double reach = 0.0, weft = 0.0, warp = 0.0, diagonal = 0.0;
@@ -159,8 +168,11 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
   }
   WovenHits<T>& hits = keeper_.hits();
   const int ground = static_cast<int>(placed_.size());
+  const bool any_pinched = std::ranges::any_of(tiles_, [](const Tile& tile) { return tile.pinched > 0; });
+  if (any_pinched) pinched_cloth_->begin(sheet);
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     Tile& tile = tiles_[t];
+    if (tile.pinched > 0 && settle(sheet, t, h)) continue;
     const std::int64_t before = hits.count;
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
       Pair& pair = pairs_[p];
@@ -181,12 +193,65 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
                         : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider], pair.rise, &hits);
       if (keeper_.keeps()) take(pair, static_cast<double>(pair.rise));
       pair.wake = travelled + static_cast<double>(gap) - k_tile_travel_slack;
+      if (-static_cast<double>(gap) > k_left_deep) tile.pinched = std::max(tile.pinched, k_suspect);
     }
+    if (tile.pinched > 0 && !pinched_cloth_) pinched_cloth_ = std::make_unique<PinchedCloth<T>>(*garment_);
     tile.touched = hits.count != before;
   }
+  if (any_pinched) spread_pinches();
   resolve_cells(kernel, view);
   counts_.contacts = hits.count;
   return true;
+}
+
+template <class T> bool WovenContacts<T>::settle(WovenSheet<T>& sheet, std::size_t t, double h) {
+  Tile& tile = tiles_[t];
+  asked_.clear();
+  for (int p = begin_[t]; p < begin_[t + 1]; ++p)
+    if (tile.travelled + collider_travel_[pairs_[p].collider] >= pairs_[p].wake)
+      asked_.push_back({pairs_[p].collider, offset_ + static_cast<double>(pairs_[p].rise)});
+  const PlacedColliders placed{input_->colliders, placed_before_, placed_, input_->friction, s_step_, h};
+  if (tile.pinched == k_suspect && !pinched_cloth_->is_pinched(sheet, tile.rows, placed, asked_)) {
+    tile.pinched = 0;
+    return false;
+  }
+  const SettledTile settled = pinched_cloth_->settle(sheet, tile.rows, placed, asked_, keeper_.swept());
+  if (keeper_.keeps()) keeper_.take_settled(placed_);
+  std::size_t k = 0;
+  for (int p = begin_[t]; p < begin_[t + 1] && k < asked_.size(); ++p) {
+    if (pairs_[p].collider != asked_[k].collider) continue;
+    pairs_[p].wake = tile.travelled + collider_travel_[pairs_[p].collider] + asked_[k].gap - k_tile_travel_slack;
+    ++k;
+  }
+  counts_.queries += static_cast<std::int64_t>(asked_.size());
+  keeper_.hits().count += settled.contacts;
+  tile.travelled += settled.start_moved;
+  tile.touched = true;
+  tile.pinched = settled.pinched ? k_pinched_for : tile.pinched - 1;
+  return true;
+}
+
+/// Those beside a tile that is pinched are settled too: what pushes their corners must not tear those that it holds.
+template <class T> void WovenContacts<T>::spread_pinches() {
+  const std::size_t count = tiles_.size(), down = tiles_per_block_;
+  for (std::size_t t = 0; t < count; ++t) {
+    if (tiles_[t].pinched != k_pinched_for) continue;
+    const auto warn = [&](std::size_t at) {
+      tiles_[at % count].pinched = std::max(tiles_[at % count].pinched, k_beside_pinched);
+    };
+    warn(t + down);
+    warn(t + count - down);
+    if ((t + 1) % down != 0) warn(t + 1);
+    if (t % down != 0) warn(t - 1);
+  }
+}
+
+/// A tile whose cells have a corner in one that is pinched: what pushed them would undo what was settled.
+template <class T> bool WovenContacts<T>::is_pinched_around(std::size_t t) const {
+  const std::size_t count = tiles_.size(), down = tiles_per_block_;
+  const auto is = [&](std::size_t at) { return tiles_[at % count].pinched > k_suspect; };
+  const bool has_below = (t + 1) % down != 0;
+  return is(t) || is(t + down) || (has_below && (is(t + 1) || is(t + 1 + down)));
 }
 
 template <class T> void WovenContacts<T>::sweep(WovenSheet<T>& sheet, const Tile& tile, const Pair& pair) {
@@ -240,6 +305,7 @@ template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& ke
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     Tile& tile = tiles_[t];
     const std::int64_t before = hits.count;
+    if (is_pinched_around(t)) continue;
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
       const Pair& pair = pairs_[p];
       const double gap = pair.wake - tile.travelled - collider_travel_[pair.collider];

@@ -4,9 +4,11 @@
 #include "cloth/state/frame.h"
 #include "cloth/state/solver_options.h"
 #include "cloth/woven/hit_keeper.h"
+#include "cloth/woven/pinched.h"
 #include "cloth/woven/sheet.h"
 #include "proxies/query/collision_query.h"
 
+#include <memory>
 #include <vector>
 
 namespace tutu::cloth {
@@ -23,9 +25,12 @@ public:
   /// `sheet`: of the garment, for its blocks.
   WovenContacts(const Garment& garment, const SolverOptions& options, const WovenSheet<T>& sheet);
 
-  /// The cloth was put elsewhere: its speed so far says nothing.
+  /// The cloth was put elsewhere: its speed so far says nothing, and whether it was pinched.
   void forget() {
-    for (Tile& tile : tiles_) tile.speed = 0.0;
+    for (Tile& tile : tiles_) {
+      tile.speed = 0.0;
+      tile.pinched = 0;
+    }
   }
 
   void begin_frame(proxies::CollisionQuery& query, const FrameInput& input, const WovenSheet<T>& sheet);
@@ -51,6 +56,7 @@ private:
     double way = 0.0;                              ///< m in this substep, before contacts
     double speed = 0.0;                            ///< m/s in the last one
     bool touched = false;                          ///< in this substep
+    int pinched = 0;                               ///< substeps that it is still settled particle by particle
   };
   struct Pair {
     int collider = 0;
@@ -64,6 +70,10 @@ private:
   void find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet);
   void place(const Vec3& origin, double s, double h);
   void sweep(WovenSheet<T>& sheet, const Tile& tile, const Pair& pair);
+  /// What may be a pinched tile; false where it is not, and nothing was done.
+  bool settle(WovenSheet<T>& sheet, std::size_t t, double h);
+  void spread_pinches();
+  bool is_pinched_around(std::size_t t) const;
   void resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view);
   void take(const Pair& pair, double rise); ///< what a call met, for who watches
   /// Low cells are looked for within a fifth more than they are at rest, others within k_cell_stretch, m.
@@ -77,7 +87,8 @@ private:
   double offset_ = 0.0; ///< m, what particles keep from colliders
   ContactFeatures features_ = ContactFeatures::automatic;
   bool swept_ = true;
-  std::vector<Tile> tiles_;
+  std::vector<Tile> tiles_; ///< block by block, down each
+  std::size_t tiles_per_block_ = 0;
   std::vector<proxies::Box> boxes_;
   proxies::Candidates candidates_;
   std::vector<int> begin_; ///< of each tile in pairs_; tiles + 1 entries
@@ -89,6 +100,9 @@ private:
   std::optional<WovenPlane<T>> ground_;
   std::vector<double> collider_travel_;  ///< m since pairs were found; the ground, last, stays at 0
   double s_before_ = 0.0, s_step_ = 0.0; ///< of the frame
+  const Garment* garment_ = nullptr;
+  std::unique_ptr<PinchedCloth<T>> pinched_cloth_; ///< made for the first tile that is pinched
+  std::vector<AskedCollider> asked_;
   HitKeeper<T> keeper_;
   ContactCounts counts_;
 };

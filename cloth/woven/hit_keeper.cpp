@@ -70,6 +70,15 @@ void HitKeeper<T>::take_swept(int collider, const proxies::Capsule& from, const 
   swept_.clear();
 }
 
+template <class T> void HitKeeper<T>::take_settled(std::span<const proxies::Capsule> placed) {
+  for (ClothContact& contact : swept_) {
+    if (contact.collider < std::ssize(placed)) set_on_proxy(contact, placed[contact.collider]);
+    else contact.on = ColliderFeature::ground;
+    set_->add(contact);
+  }
+  swept_.clear();
+}
+
 template class HitKeeper<float>;
 template class HitKeeper<double>;
 

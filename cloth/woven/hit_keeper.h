@@ -29,6 +29,7 @@ public:
   /// Contacts of a sweep that lack their collider. `from` to `to`: the proxy's way in the substep.
   std::vector<ClothContact>* swept() { return keeps() ? &swept_ : nullptr; }
   void take_swept(int collider, const proxies::Capsule& from, const proxies::Capsule& to);
+  void take_settled(std::span<const proxies::Capsule> placed); ///< contacts of depth; the ground is behind the last
 
 private:
   template <class Finish> void take_all(int collider, double within, const Finish& finish);

@@ -191,8 +191,8 @@ template <class T> struct WovenKernel {
   /// Lowest and highest coordinates, 3 numbers each.
   void (*bounds)(Sheet, int block, int first, int last, T* low, T* high);
 
-  /// Pushes free particles out of a collider and rubs. Returns the smallest distance of one to the surface (with the
-  /// offset) before that, m, and adds to `hits`. `rise` adds to the collider's radius.
+  /// Pushes free particles out of a collider and rubs. Returns the smallest distance of a free one to the surface (with
+  /// the offset) before that, m, and adds to `hits`. `rise` adds to the collider's radius.
   T (*contact_capsule)(Sheet, const WovenRows&, const WovenCollider<T>&, T rise, WovenHits<T>* hits);
   T (*contact_plane)(Sheet, const WovenRows&, const WovenPlane<T>&, WovenHits<T>* hits);
 

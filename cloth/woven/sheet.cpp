@@ -266,9 +266,15 @@ template <class T> double WovenSheet<T>::inverse_mass(int particle) const {
   return static_cast<double>(view_.inverse_mass.data[block * view_.inverse_mass.block_stride + in_block]);
 }
 
-template <class T> void WovenSheet<T>::move_to(int particle, const Vec3& position) {
+template <class T> void WovenSheet<T>::put(T* const* field, int particle, const Vec3& position) {
   for (int axis = 0; axis < 3; ++axis)
-    view_.x[axis][elements_[particle]] = static_cast<T>(position[axis] - origin_[axis]);
+    field[axis][elements_[particle]] = static_cast<T>(position[axis] - origin_[axis]);
+}
+
+template <class T> void WovenSheet<T>::move_to(int particle, const Vec3& position) { put(view_.x, particle, position); }
+
+template <class T> void WovenSheet<T>::move_start_to(int particle, const Vec3& position) {
+  put(view_.was, particle, position);
 }
 
 template <class T> void WovenSheet<T>::pin_to(int particle, const Vec3& position, double h) {

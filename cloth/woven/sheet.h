@@ -66,6 +66,7 @@ public:
   int column_of(int block, int lane) const; ///< of the weave; -1 where there is none
   bool is_ring() const { return garment_->woven_shut; }
   void move_to(int particle, const Vec3& position);
+  void move_start_to(int particle, const Vec3& position); ///< where the substep began
   /// As a pinned particle: at `position` with the velocity that takes it there in h.
   void pin_to(int particle, const Vec3& position, double h);
   void set_velocity(int particle, const Vec3& velocity);
@@ -76,6 +77,7 @@ public:
 
 private:
   Vec3 at(T* const* field, int particle) const;
+  void put(T* const* field, int particle, const Vec3& position);
   void build_springs(const Garment& garment);
   void build_bends(const Garment& garment);
   void place_tethers(const Garment& garment);

@@ -152,8 +152,9 @@ public:
     double least = std::numeric_limits<double>::max();
     for_block(block, first, last, [&](int i) {
       const Searched contact = search_point(x[i], shape);
+      if (inverse_mass_[i] == 0.0) return;
       least = std::min(least, contact.distance);
-      if (inverse_mass_[i] == 0.0 || contact.distance >= 0.0) return;
+      if (contact.distance >= 0.0) return;
       const Vec3 surface = risen.surface_way(contact.t, contact.normal);
       x[i] += response(-contact.distance, contact.normal, x[i] - was[i], surface, collider.moved(),
                        collider.push_speed_step, collider.friction);
@@ -167,8 +168,9 @@ public:
     for_block(block, first, last, [&](int i) {
       const Vec3& n = plane.plane.normal;
       const double height = n.x() * x[i].x() + n.y() * x[i].y() + n.z() * x[i].z() - plane.plane.offset;
+      if (inverse_mass_[i] == 0.0) return;
       least = std::min(least, height);
-      if (inverse_mass_[i] == 0.0 || height >= 0.0) return;
+      if (height >= 0.0) return;
       x[i] += response(-height, n, x[i] - was[i], Vec3::Zero(), 0.0, plane.push_speed_step, plane.friction);
       ++*contacts;
     });

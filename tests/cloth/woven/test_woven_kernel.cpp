@@ -377,8 +377,10 @@ TYPED_TEST(WovenKernels, ParticlesAgainstCapsulesAndSpheres) {
       both.for_tiles([&](int block, int first, int last) {
         const double expected = both.twin.contact_capsule(block, first, last, collider, rise, &expected_hits);
         const T gap = both.kernel.contact_capsule(both.view, {block, first, last}, c, rounded<T>(rise), &hits);
-        if (block < garment.columns) {
+        if (expected < 1e3) { // there is a free particle
           EXPECT_NEAR(static_cast<double>(gap), expected, Bound<T>::contact);
+        } else {
+          EXPECT_GT(static_cast<double>(gap), 1e3);
         }
       });
       worst.add(both.worst_x());
@@ -414,8 +416,10 @@ TYPED_TEST(WovenKernels, ParticlesAgainstAPlane) {
       both.for_tiles([&](int block, int first, int last) {
         const double expected = both.twin.contact_plane(block, first, last, plane, &expected_hits);
         const T gap = both.kernel.contact_plane(both.view, {block, first, last}, p, &hits);
-        if (block < garment.columns) {
+        if (expected < 1e3) { // there is a free particle
           EXPECT_NEAR(static_cast<double>(gap), expected, Bound<T>::contact);
+        } else {
+          EXPECT_GT(static_cast<double>(gap), 1e3);
         }
       });
       worst.add(both.worst_x());

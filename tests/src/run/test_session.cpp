@@ -100,12 +100,14 @@ bool are_in_order(const std::string& text, const std::vector<std::string>& parts
 TEST(RunTroubles, AFailureSaysWhatWasFoundWhereAndWhy) {
   LoadedScene scene = dance();
   scene.settings.adaptive_substeps = false;
+  scene.settings.substeps = 2;
   Session session(scene);
   session.start(rest_of(scene));
   session.advance_to(pose_moved(scene, Vec3::Zero()), 0.0);
   // Joints that stay where they are, and turn the skin that garments hang on: no jump, and no motion either.
   std::vector<Transform> turned = pose_moved(scene, Vec3::Zero());
-  for (Transform& local : turned) local.rotation = Quat(Eigen::AngleAxisd(3.0, Vec3::UnitY())) * local.rotation;
+  for (Transform& local : turned)
+    local.rotation = Quat(Eigen::AngleAxisd(3.0, Vec3::UnitY())) * local.rotation;
   for (int f = 0; f < 40 && !session.failure(); ++f)
     session.advance_to(f % 2 == 0 ? turned : pose_moved(scene, Vec3::Zero()), 0.0);
   std::vector<std::string> told;

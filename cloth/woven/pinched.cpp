@@ -1,0 +1,138 @@
+#include "cloth/woven/pinched.h"
+
+#include "cloth/contact/coulomb.h"
+#include "cloth/state/tolerances.h"
+#include "proxies/distance/signed_distance.h"
+#include "proxies/motion/collider_motion.h"
+
+#include <algorithm>
+
+namespace tutu::cloth {
+namespace {
+
+proxies::Contact contact_with(const PlacedColliders& placed, int collider, const Vec3& point) {
+  return collider < placed.colliders.size() ? proxies::signed_distance(point, placed.now[collider])
+                                            : proxies::signed_distance(point, *placed.colliders.ground);
+}
+
+/// How a collider moves where it is met, and how it rubs.
+void set_surface(NearCollider& near, const PlacedColliders& placed) {
+  if (!placed.friction.empty()) near.friction = placed.friction[near.collider];
+  if (near.collider >= placed.colliders.size()) return;
+  const proxies::Capsule &before = placed.before[near.collider], &now = placed.now[near.collider];
+  const std::span<const Vec3> spins = placed.colliders.spin;
+  const Vec3 spin = spins.empty() ? Vec3(Vec3::Zero()) : Vec3(placed.share * spins[near.collider]);
+  near.surface = proxies::surface_motion(before, now, spin, near.contact.closest);
+  near.moved = std::max((now.a - before.a).norm(), (now.b - before.b).norm());
+}
+
+/// Calls visit(particle) for the free ones of rows of a block.
+template <class T, class Visit> void for_free(const WovenSheet<T>& sheet, const WovenRows& rows, const Visit& visit) {
+  for (int row = rows.first; row < rows.last; ++row)
+    for (int lane = 0; lane < sheet.view().lanes; ++lane) {
+      const int column = sheet.column_of(rows.block, lane);
+      if (column < 0) continue;
+      const int particle = sheet.weave().particle(row, column);
+      if (sheet.inverse_mass(particle) > 0.0) visit(particle);
+    }
+}
+
+} // namespace
+
+template <class T>
+std::optional<NearCollider> PinchedCloth<T>::ask(int particle, const AskedCollider& asked,
+                                                 const PlacedColliders& placed, double slack) const {
+  NearCollider near;
+  near.collider = asked.collider;
+  near.contact = contact_with(placed, asked.collider, x_[particle]);
+  if (near.contact.distance >= asked.within + slack) return std::nullopt;
+  near.need = asked.within;
+  if (const int held = between_.held_by(particle); held >= 0)
+    near.need = between_.need(particle, asked.within, contact_with(placed, asked.collider, x_[held]).distance);
+  if (near.lacks() <= -slack) return std::nullopt;
+  near.is_limited = near.need < asked.within;
+  set_surface(near, placed);
+  return near;
+}
+
+template <class T>
+void PinchedCloth<T>::find_near(int particle, std::span<const AskedCollider> asked, const PlacedColliders& placed) {
+  double deepest = 0.0;
+  for (const AskedCollider& other : asked)
+    if (const auto near = ask(particle, other, placed, 0.0)) deepest = std::max(deepest, near->lacks());
+  near_.clear();
+  if (!(deepest > 0.0)) return;
+  for (const AskedCollider& other : asked)
+    if (const auto near = ask(particle, other, placed, deepest)) near_.push_back(*near);
+}
+
+template <class T> bool PinchedCloth<T>::is_pinched() const {
+  return opposed(near_) ||
+         std::ranges::any_of(near_, [](const NearCollider& near) { return near.is_limited && near.lacks() > 0.0; });
+}
+
+template <class T>
+bool PinchedCloth<T>::is_pinched(const WovenSheet<T>& sheet, const WovenRows& rows, const PlacedColliders& placed,
+                                 std::span<const AskedCollider> asked) {
+  bool found = false;
+  for_free(sheet, rows, [&](int particle) {
+    if (found) return;
+    find_near(particle, asked, placed);
+    found = is_pinched();
+  });
+  return found;
+}
+
+template <class T>
+SettledTile PinchedCloth<T>::settle(WovenSheet<T>& sheet, const WovenRows& rows, const PlacedColliders& placed,
+                                    std::span<AskedCollider> asked, std::vector<ClothContact>* kept) {
+  SettledTile result;
+  const double push_step = k_push_out_speed * placed.h;
+  const auto move = [&](int particle, const NearCollider& near, ContactCause cause, const Vec3& moved,
+                        const Vec3& start = Vec3::Zero()) {
+    if (moved.isZero(0.0) && start.isZero(0.0)) return; // its threads let nothing move
+    sheet.move_to(particle, x_[particle] + moved);
+    x_[particle] = sheet.position(particle);
+    ++result.contacts;
+    if (!kept) return;
+    ClothContact& contact = kept->emplace_back();
+    contact.particles[0] = particle;
+    contact.weights[0] = contact.levers[0] = 1.0;
+    contact.collider = near.collider;
+    contact.contact = near.contact;
+    contact.push = moved.dot(near.contact.normal);
+    contact.moved = moved;
+    contact.cause = cause;
+    contact.velocity = (moved - start) / placed.h;
+  };
+  for_free(sheet, rows, [&](int i) {
+    x_[i] = sheet.position(i); // the sweeps of tiles before may have moved it
+    for (AskedCollider& other : asked)
+      other.gap = std::min(other.gap, contact_with(placed, other.collider, x_[i]).distance - other.within);
+    find_near(i, asked, placed);
+    if (near_.empty()) return;
+    result.pinched = result.pinched || is_pinched();
+    const Vec3 start = sheet.start_position(i);
+    if (const auto settled = between_.settle({i, start, push_step}, near_, x_)) {
+      result.start_moved = std::max(result.start_moved, settled->start.norm());
+      sheet.move_start_to(i, start + settled->start);
+      move(i, near_[settled->by], ContactCause::pinch, settled->way, settled->start);
+    } else {
+      for (const AskedCollider& other : asked) {
+        const auto near = ask(i, other, placed, 0.0); // from where those before it left the particle
+        if (!near) continue;
+        const Vec3 way = x_[i] - start, &n = near->contact.normal;
+        const double push = std::min(near->lacks(), way.norm() + near->moved + push_step);
+        const Vec3 pushed = push * n;
+        move(i, *near, ContactCause::depth,
+             between_.fitted(i, rubbed(pushed, way + pushed - near->surface, n, near->friction * push), x_));
+      }
+    }
+  });
+  return result;
+}
+
+template class PinchedCloth<float>;
+template class PinchedCloth<double>;
+
+} // namespace tutu::cloth
