@@ -19,7 +19,7 @@ namespace tutu::cloth {
 enum class ContactCause : std::uint8_t {
   depth, ///< where cloth was when the substep ended
   sweep, ///< it had gone through in the substep: found by its time of impact
-  pinch  ///< between two colliders, this the one that pushed: `moved` is the way to the middle (between_colliders.h)
+  pinch  ///< in cloth that is caught between colliders: `moved` is what between_colliders.h makes of the push
 };
 
 /// What the cloth met. A cone is a proxy with two radii; the last three are of the true body.

@@ -88,8 +88,7 @@ SettledTile PinchedCloth<T>::settle(WovenSheet<T>& sheet, const WovenRows& rows,
                                     std::span<AskedCollider> asked, std::vector<ClothContact>* kept) {
   SettledTile result;
   const double push_step = k_push_out_speed * placed.h;
-  const auto move = [&](int particle, const NearCollider& near, ContactCause cause, const Vec3& moved,
-                        const Vec3& start = Vec3::Zero()) {
+  const auto move = [&](int particle, const NearCollider& near, const Vec3& moved, const Vec3& start = Vec3::Zero()) {
     if (moved.isZero(0.0) && start.isZero(0.0)) return; // its threads let nothing move
     sheet.move_to(particle, x_[particle] + moved);
     x_[particle] = sheet.position(particle);
@@ -102,7 +101,7 @@ SettledTile PinchedCloth<T>::settle(WovenSheet<T>& sheet, const WovenRows& rows,
     contact.contact = near.contact;
     contact.push = moved.dot(near.contact.normal);
     contact.moved = moved;
-    contact.cause = cause;
+    contact.cause = ContactCause::pinch;
     contact.velocity = (moved - start) / placed.h;
   };
   for_free(sheet, rows, [&](int i) {
@@ -116,7 +115,7 @@ SettledTile PinchedCloth<T>::settle(WovenSheet<T>& sheet, const WovenRows& rows,
     if (const auto settled = between_.settle({i, start, push_step}, near_, x_)) {
       result.start_moved = std::max(result.start_moved, settled->start.norm());
       sheet.move_start_to(i, start + settled->start);
-      move(i, near_[settled->by], ContactCause::pinch, settled->way, settled->start);
+      move(i, near_[settled->by], settled->way, settled->start);
     } else {
       for (const AskedCollider& other : asked) {
         const auto near = ask(i, other, placed, 0.0); // from where those before it left the particle
@@ -124,8 +123,7 @@ SettledTile PinchedCloth<T>::settle(WovenSheet<T>& sheet, const WovenRows& rows,
         const Vec3 way = x_[i] - start, &n = near->contact.normal;
         const double push = std::min(near->lacks(), way.norm() + near->moved + push_step);
         const Vec3 pushed = push * n;
-        move(i, *near, ContactCause::depth,
-             between_.fitted(i, rubbed(pushed, way + pushed - near->surface, n, near->friction * push), x_));
+        move(i, *near, between_.fitted(i, rubbed(pushed, way + pushed - near->surface, n, near->friction * push), x_));
       }
     }
   });
