@@ -58,8 +58,8 @@ TEST_F(SceneMemory, AResolutionThatIsTooFineIsToldOfTheScene) {
   const InputError error = refusal();
   EXPECT_EQ(error.file(), scene_);
   EXPECT_EQ(error.place(), "/garments/1/resolution");
-  EXPECT_THAT(error.found(), HasSubstr("a garment of 34,821,801 particles, about 25.9 GiB"));
-  EXPECT_EQ(error.expected(), "at most 2 GiB; TUTU_MEMORY_GIB=26 raises the limit");
+  EXPECT_THAT(error.found(), HasSubstr("a garment of 34,821,801 particles, about 31.1 GiB"));
+  EXPECT_EQ(error.expected(), "at most 2 GiB; TUTU_MEMORY_GIB=32 raises the limit");
 }
 
 TEST_F(SceneMemory, AGarmentThatIsTooLargeIsToldOfItsOwnFile) {
@@ -69,8 +69,8 @@ TEST_F(SceneMemory, AGarmentThatIsTooLargeIsToldOfItsOwnFile) {
   const InputError error = refusal();
   EXPECT_EQ(error.file(), path("huge.json"));
   EXPECT_EQ(error.place(), "/shape/grid");
-  EXPECT_EQ(error.found(), "a garment of 16,777,216 particles, about 12.5 GiB");
-  EXPECT_EQ(error.expected(), "at most 1 GiB; TUTU_MEMORY_GIB=13 raises the limit");
+  EXPECT_EQ(error.found(), "a garment of 16,777,216 particles, about 15 GiB");
+  EXPECT_EQ(error.expected(), "at most 1 GiB; TUTU_MEMORY_GIB=15 raises the limit");
   garments(R"({"file": "huge.json", "resolution": 0.01})");
   EXPECT_EQ(load_scene(read_scene(scene_)).garments[0].particle_count(), 42 * 42) << "few of it is not too large";
 }
