@@ -13,12 +13,15 @@
 namespace tutu::cloth {
 namespace {
 
-/// m. Where cloth begins that deep in a collider it is looked at whether it is pinched; in the dance nothing ever does.
+/// m. Where cloth is that much deeper in a collider than this came in the substep, it is looked at whether it is
+/// pinched; in the dance it never is.
 constexpr double k_left_deep = 0.003;
 
 // Tile::pinched: substeps that a tile is settled particle by particle after it was pinched, those that one beside it
 // is, and when it is looked at whether it has to be.
 constexpr int k_pinched_for = 16, k_beside_pinched = 9, k_suspect = 1;
+/// Substeps for which nobody looks again at a tile that was not; Tile::pinched is below 0.
+constexpr int k_unsuspected_for = 7;
 
 constexpr int k_tile_rows = 8; // of 16 particles: small enough for few colliders, large enough to ask once for many
 
@@ -30,7 +33,8 @@ template <class T> void copy(const Vec3& from, T* to) {
 
 template <class T>
 WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& options, const WovenSheet<T>& sheet)
-    : offset_(garment.fabric.contact_offset()), features_(options.features), swept_(options.swept), garment_(&garment) {
+    : offset_(garment.fabric.contact_offset()), features_(options.features), swept_(options.swept),
+      pinched_cloth_(garment) {
   const WovenSheetView<T>& view = sheet.view();
   for (int block = 0; block < view.blocks; ++block)
     for (int first = 0; first < view.rows; first += k_tile_rows) {
@@ -169,9 +173,10 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
   WovenHits<T>& hits = keeper_.hits();
   const int ground = static_cast<int>(placed_.size());
   const bool any_pinched = std::ranges::any_of(tiles_, [](const Tile& tile) { return tile.pinched > 0; });
-  if (any_pinched) pinched_cloth_->begin(sheet);
+  if (any_pinched) pinched_cloth_.begin(sheet);
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     Tile& tile = tiles_[t];
+    if (tile.pinched < 0) ++tile.pinched;
     if (tile.pinched > 0 && settle(sheet, t, h)) continue;
     const std::int64_t before = hits.count;
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
@@ -193,9 +198,9 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
                         : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider], pair.rise, &hits);
       if (keeper_.keeps()) take(pair, static_cast<double>(pair.rise));
       pair.wake = travelled + static_cast<double>(gap) - k_tile_travel_slack;
-      if (-static_cast<double>(gap) > k_left_deep) tile.pinched = std::max(tile.pinched, k_suspect);
+      const double moved = pair.collider == ground ? 0.0 : static_cast<double>(colliders_[pair.collider].moved);
+      if (tile.pinched == 0 && -static_cast<double>(gap) > moved + k_left_deep) tile.pinched = k_suspect;
     }
-    if (tile.pinched > 0 && !pinched_cloth_) pinched_cloth_ = std::make_unique<PinchedCloth<T>>(*garment_);
     tile.touched = hits.count != before;
   }
   if (any_pinched) spread_pinches();
@@ -211,11 +216,11 @@ template <class T> bool WovenContacts<T>::settle(WovenSheet<T>& sheet, std::size
     if (tile.travelled + collider_travel_[pairs_[p].collider] >= pairs_[p].wake)
       asked_.push_back({pairs_[p].collider, offset_ + static_cast<double>(pairs_[p].rise)});
   const PlacedColliders placed{input_->colliders, placed_before_, placed_, input_->friction, s_step_, h};
-  if (tile.pinched == k_suspect && !pinched_cloth_->is_pinched(sheet, tile.rows, placed, asked_)) {
-    tile.pinched = 0;
+  if (tile.pinched == k_suspect && !pinched_cloth_.is_pinched(sheet, tile.rows, placed, asked_)) {
+    tile.pinched = -k_unsuspected_for;
     return false;
   }
-  const SettledTile settled = pinched_cloth_->settle(sheet, tile.rows, placed, asked_, keeper_.swept());
+  const SettledTile settled = pinched_cloth_.settle(sheet, tile.rows, placed, asked_, keeper_.swept());
   if (keeper_.keeps()) keeper_.take_settled(placed_);
   std::size_t k = 0;
   for (int p = begin_[t]; p < begin_[t + 1] && k < asked_.size(); ++p) {

@@ -8,7 +8,6 @@
 #include "cloth/woven/sheet.h"
 #include "proxies/query/collision_query.h"
 
-#include <memory>
 #include <vector>
 
 namespace tutu::cloth {
@@ -56,7 +55,7 @@ private:
     double way = 0.0;                              ///< m in this substep, before contacts
     double speed = 0.0;                            ///< m/s in the last one
     bool touched = false;                          ///< in this substep
-    int pinched = 0;                               ///< substeps that it is still settled particle by particle
+    int pinched = 0;                               ///< substeps that it is still settled one by one (contacts.cpp)
   };
   struct Pair {
     int collider = 0;
@@ -100,8 +99,7 @@ private:
   std::optional<WovenPlane<T>> ground_;
   std::vector<double> collider_travel_;  ///< m since pairs were found; the ground, last, stays at 0
   double s_before_ = 0.0, s_step_ = 0.0; ///< of the frame
-  const Garment* garment_ = nullptr;
-  std::unique_ptr<PinchedCloth<T>> pinched_cloth_; ///< made for the first tile that is pinched
+  PinchedCloth<T> pinched_cloth_;
   std::vector<AskedCollider> asked_;
   HitKeeper<T> keeper_;
   ContactCounts counts_;
