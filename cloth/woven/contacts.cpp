@@ -78,6 +78,8 @@ void WovenContacts<T>::begin_frame(proxies::CollisionQuery& query, const FrameIn
     const std::size_t most = tiles_.size() * (placed_.size() + 1);
     pairs_.reserve(most);
     candidates_.colliders.reserve(most);
+    asked_.reserve(placed_.size() + 1);
+    pinched_cloth_.reserve(placed_.size() + 1);
   }
   colliders_.resize(placed_.size());
   for (Tile& tile : tiles_) tile.margin = k_least_tile_margin + k_margin_growth * tile.speed * input.seconds;

@@ -40,6 +40,7 @@ template <class T> class PinchedCloth {
 public:
   explicit PinchedCloth(const Garment& garment) : between_(garment), x_(garment.rest_positions.size()) {}
 
+  void reserve(std::size_t colliders) { near_.reserve(colliders); } ///< room, so that no later frame asks for more
   /// Takes the places of all particles after the constraints, before the first tile of a substep is settled.
   void begin(const WovenSheet<T>& sheet) { sheet.get_positions(x_); }
 
