@@ -1,6 +1,7 @@
 #include "cloth/adaptive_substeps.h"
 
 #include "cloth/state/tolerances.h"
+#include "proxies/motion/collider_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +59,7 @@ SubstepPlan plan_substeps(const FrameInput& input, const Extent& garment, double
   for (int c = 0; c < input.colliders.size(); ++c) {
     const proxies::Capsule &start = input.colliders.start[c], &end = input.colliders.end[c];
     const double half_turn = half_turn_of(input.colliders, c);
-    const double chord = std::max((end.a - start.a).norm(), (end.b - start.b).norm());
+    const double chord = proxies::farthest_way(start, end);
     const double bulge = 0.5 * chord * std::tan(0.5 * half_turn); // of the arc beyond its chord
     if (!is_near(start, end, start.widest() + contact_offset + cloth_way + bulge, garment)) continue;
     const double collider_way = arc_over(chord, half_turn);

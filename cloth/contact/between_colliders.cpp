@@ -1,13 +1,11 @@
 #include "cloth/contact/between_colliders.h"
 
-#include "cloth/contact/coulomb.h"
 #include "cloth/state/tolerances.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace tutu::cloth {
-
 namespace {
 
 /// What two colliders lack, m, and the cosine between their normals, < 0.

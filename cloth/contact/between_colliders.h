@@ -4,7 +4,6 @@
 #include "cloth/garment/elements.h"
 #include "proxies/contact.h"
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -24,6 +23,7 @@ struct NearCollider {
   double lacks() const { return need - contact.distance; } ///< m; <= 0 where it does not touch
 };
 
+/// Indices of two of some colliders.
 struct Opposed {
   std::size_t first = 0, second = 0;
 };

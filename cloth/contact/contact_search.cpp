@@ -1,6 +1,7 @@
 #include "cloth/contact/contact_search.h"
 
 #include "cloth/contact/coulomb.h"
+#include "proxies/motion/collider_motion.h"
 
 #include <algorithm>
 #include <cmath>
@@ -87,9 +88,7 @@ void ContactSearch::keep(ClothContact contact, const Response& response) const {
 double ContactSearch::substep_way(int collider) const {
   if (collider == colliders_.body_index()) return since_before_ * body_way_;
   if (collider == colliders_.ground_index()) return 0.0;
-  const proxies::Capsule &before = placed_before_[collider], &now = placed_[collider];
-  // No point of the capsule moves farther than its farther end.
-  return std::max((now.a - before.a).norm(), (now.b - before.b).norm());
+  return proxies::farthest_way(placed_before_[collider], placed_[collider]);
 }
 
 SweptCollider ContactSearch::swept_way(int proxy) const {

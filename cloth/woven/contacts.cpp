@@ -222,7 +222,7 @@ template <class T> bool WovenContacts<T>::settle(WovenSheet<T>& sheet, std::size
     tile.pinched = -k_unsuspected_for;
     return false;
   }
-  const SettledTile settled = pinched_cloth_.settle(sheet, tile.rows, placed, asked_, keeper_.swept());
+  const SettledTile settled = pinched_cloth_.settle(sheet, tile.rows, placed, asked_, keeper_.listed());
   if (keeper_.keeps()) keeper_.take_settled(placed_);
   std::size_t k = 0;
   for (int p = begin_[t]; p < begin_[t + 1] && k < asked_.size(); ++p) {
@@ -268,7 +268,7 @@ template <class T> void WovenContacts<T>::sweep(WovenSheet<T>& sheet, const Tile
   if (!input_->colliders.spin.empty()) collider.spin = s_step_ * input_->colliders.spin[pair.collider];
   collider.offset = offset_;
   keeper_.hits().count += sweep_tile(sheet, tile.rows.block, tile.rows.first, tile.rows.last, collider,
-                                     pair.features.wide || pair.in_haste, keeper_.swept());
+                                     pair.features.wide || pair.in_haste, keeper_.listed());
   if (keeper_.keeps()) keeper_.take_swept(pair.collider, collider.start, collider.end);
 }
 

@@ -62,21 +62,21 @@ template <class T> void HitKeeper<T>::take(int ground, double within) {
 
 template <class T>
 void HitKeeper<T>::take_swept(int collider, const proxies::Capsule& from, const proxies::Capsule& to) {
-  for (ClothContact& contact : swept_) {
+  for (ClothContact& contact : listed_) {
     contact.collider = collider;
     set_on_proxy(contact, proxies::capsule_at(from, to, contact.time));
     add(contact);
   }
-  swept_.clear();
+  listed_.clear();
 }
 
 template <class T> void HitKeeper<T>::take_settled(std::span<const proxies::Capsule> placed) {
-  for (ClothContact& contact : swept_) {
+  for (ClothContact& contact : listed_) {
     if (contact.collider < std::ssize(placed)) set_on_proxy(contact, placed[contact.collider]);
     else contact.on = ColliderFeature::ground;
     set_->add(contact);
   }
-  swept_.clear();
+  listed_.clear();
 }
 
 template class HitKeeper<float>;

@@ -26,8 +26,9 @@ public:
   void take(int collider, const proxies::Capsule& proxy, double within);
   void take(int ground, double within);
 
-  /// Contacts of a sweep that lack their collider. `from` to `to`: the proxy's way in the substep.
-  std::vector<ClothContact>* swept() { return keeps() ? &swept_ : nullptr; }
+  /// For contacts that plain code finds. Of a sweep they lack their collider; `from` to `to`: the proxy's way in the
+  /// substep.
+  std::vector<ClothContact>* listed() { return keeps() ? &listed_ : nullptr; }
   void take_swept(int collider, const proxies::Capsule& from, const proxies::Capsule& to);
   void take_settled(std::span<const proxies::Capsule> placed); ///< contacts of depth; the ground is behind the last
 
@@ -40,8 +41,8 @@ private:
   Vec3 origin_ = Vec3::Zero();
   double h_ = 0.0;
   WovenHits<T> hits_;
-  std::vector<WovenHit<T>> called_; ///< of the call
-  std::vector<ClothContact> swept_; ///< of the sweep
+  std::vector<WovenHit<T>> called_;  ///< of the call
+  std::vector<ClothContact> listed_; ///< of the call
 };
 
 } // namespace tutu::cloth

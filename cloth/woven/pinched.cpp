@@ -23,47 +23,34 @@ void set_surface(NearCollider& near, const PlacedColliders& placed) {
   const std::span<const Vec3> spins = placed.colliders.spin;
   const Vec3 spin = spins.empty() ? Vec3(Vec3::Zero()) : Vec3(placed.share * spins[near.collider]);
   near.surface = proxies::surface_motion(before, now, spin, near.contact.closest);
-  near.moved = std::max((now.a - before.a).norm(), (now.b - before.b).norm());
-}
-
-/// Calls visit(particle) for the free ones of rows of a block.
-template <class T, class Visit> void for_free(const WovenSheet<T>& sheet, const WovenRows& rows, const Visit& visit) {
-  for (int row = rows.first; row < rows.last; ++row)
-    for (int lane = 0; lane < sheet.view().lanes; ++lane) {
-      const int column = sheet.column_of(rows.block, lane);
-      if (column < 0) continue;
-      const int particle = sheet.weave().particle(row, column);
-      if (sheet.inverse_mass(particle) > 0.0) visit(particle);
-    }
+  near.moved = proxies::farthest_way(before, now);
 }
 
 } // namespace
 
 template <class T>
-std::optional<NearCollider> PinchedCloth<T>::ask(int particle, const AskedCollider& asked,
-                                                 const PlacedColliders& placed, double slack) const {
+NearCollider PinchedCloth<T>::at(int particle, const AskedCollider& asked, const PlacedColliders& placed) const {
   NearCollider near;
   near.collider = asked.collider;
   near.contact = contact_with(placed, asked.collider, x_[particle]);
-  if (near.contact.distance >= asked.within + slack) return std::nullopt;
   near.need = asked.within;
   if (const int held = between_.held_by(particle); held >= 0)
     near.need = between_.need(particle, asked.within, contact_with(placed, asked.collider, x_[held]).distance);
-  if (near.lacks() <= -slack) return std::nullopt;
   near.is_limited = near.need < asked.within;
-  set_surface(near, placed);
   return near;
 }
 
 template <class T>
-void PinchedCloth<T>::find_near(int particle, std::span<const AskedCollider> asked, const PlacedColliders& placed) {
-  double deepest = 0.0;
-  for (const AskedCollider& other : asked)
-    if (const auto near = ask(particle, other, placed, 0.0)) deepest = std::max(deepest, near->lacks());
+void PinchedCloth<T>::find_near(int particle, std::span<AskedCollider> asked, const PlacedColliders& placed) {
   near_.clear();
-  if (!(deepest > 0.0)) return;
-  for (const AskedCollider& other : asked)
-    if (const auto near = ask(particle, other, placed, deepest)) near_.push_back(*near);
+  double deepest = 0.0;
+  for (AskedCollider& other : asked) {
+    const NearCollider& near = near_.emplace_back(at(particle, other, placed));
+    other.gap = std::min(other.gap, near.contact.distance - other.within);
+    deepest = std::max(deepest, near.lacks());
+  }
+  std::erase_if(near_, [&](const NearCollider& near) { return near.lacks() <= -deepest; });
+  for (NearCollider& near : near_) set_surface(near, placed);
 }
 
 template <class T> bool PinchedCloth<T>::is_pinched() const {
@@ -73,9 +60,9 @@ template <class T> bool PinchedCloth<T>::is_pinched() const {
 
 template <class T>
 bool PinchedCloth<T>::is_pinched(const WovenSheet<T>& sheet, const WovenRows& rows, const PlacedColliders& placed,
-                                 std::span<const AskedCollider> asked) {
+                                 std::span<AskedCollider> asked) {
   bool found = false;
-  for_free(sheet, rows, [&](int particle) {
+  sheet.for_free(rows, [&](int particle) {
     if (found) return;
     find_near(particle, asked, placed);
     found = is_pinched();
@@ -104,10 +91,8 @@ SettledTile PinchedCloth<T>::settle(WovenSheet<T>& sheet, const WovenRows& rows,
     contact.cause = ContactCause::pinch;
     contact.velocity = (moved - start) / placed.h;
   };
-  for_free(sheet, rows, [&](int i) {
+  sheet.for_free(rows, [&](int i) {
     x_[i] = sheet.position(i); // the sweeps of tiles before may have moved it
-    for (AskedCollider& other : asked)
-      other.gap = std::min(other.gap, contact_with(placed, other.collider, x_[i]).distance - other.within);
     find_near(i, asked, placed);
     if (near_.empty()) return;
     result.pinched = result.pinched || is_pinched();
@@ -118,12 +103,13 @@ SettledTile PinchedCloth<T>::settle(WovenSheet<T>& sheet, const WovenRows& rows,
       move(i, near_[settled->by], settled->way, settled->start);
     } else {
       for (const AskedCollider& other : asked) {
-        const auto near = ask(i, other, placed, 0.0); // from where those before it left the particle
-        if (!near) continue;
-        const Vec3 way = x_[i] - start, &n = near->contact.normal;
-        const double push = std::min(near->lacks(), way.norm() + near->moved + push_step);
+        NearCollider near = at(i, other, placed); // from where those before it left the particle
+        if (near.lacks() <= 0.0) continue;
+        set_surface(near, placed);
+        const Vec3 way = x_[i] - start, &n = near.contact.normal;
+        const double push = std::min(near.lacks(), way.norm() + near.moved + push_step);
         const Vec3 pushed = push * n;
-        move(i, *near, between_.fitted(i, rubbed(pushed, way + pushed - near->surface, n, near->friction * push), x_));
+        move(i, near, between_.fitted(i, rubbed(pushed, way + pushed - near.surface, n, near.friction * push), x_));
       }
     }
   });

@@ -46,7 +46,7 @@ public:
 
   /// Whether a free particle of rows of a block is between two of those that are asked.
   bool is_pinched(const WovenSheet<T>& sheet, const WovenRows& rows, const PlacedColliders& placed,
-                  std::span<const AskedCollider> asked);
+                  std::span<AskedCollider> asked);
 
   /// Moves the free particles of rows of a block out of those that are `asked`: as BetweenColliders has it where two
   /// are opposed, else out of one after the other.
@@ -54,13 +54,12 @@ public:
                      std::span<AskedCollider> asked, std::vector<ClothContact>* kept);
 
 private:
-  /// A collider that lacks more than -slack, m.
-  std::optional<NearCollider> ask(int particle, const AskedCollider& asked, const PlacedColliders& placed,
-                                  double slack) const;
+  /// A collider at a particle, but for how its surface moves and rubs.
+  NearCollider at(int particle, const AskedCollider& asked, const PlacedColliders& placed) const;
   bool is_pinched() const; ///< by near_
   /// Fills near_ with those of `asked` that a particle is nearer to than it can keep, and those that these may push it
   /// to.
-  void find_near(int particle, std::span<const AskedCollider> asked, const PlacedColliders& placed);
+  void find_near(int particle, std::span<AskedCollider> asked, const PlacedColliders& placed);
 
   BetweenColliders between_;
   std::vector<Vec3> x_; ///< of all particles, as they are settled

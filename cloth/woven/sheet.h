@@ -64,6 +64,15 @@ public:
   Vec3 start_position(int particle) const { return at(view_.was, particle) + origin_; }
   double inverse_mass(int particle) const;  ///< 1/kg, 0 for pinned particles
   int column_of(int block, int lane) const; ///< of the weave; -1 where there is none
+  /// Calls visit(particle) for the free ones of rows of a block, row by row.
+  template <class Visit> void for_free(const WovenRows& rows, const Visit& visit) const {
+    for (int row = rows.first; row < rows.last; ++row)
+      for (int lane = 0; lane < view_.lanes; ++lane) {
+        const int column = column_of(rows.block, lane);
+        if (column < 0) continue;
+        if (const int i = weave_.particle(row, column); inverse_mass(i) > 0.0) visit(i);
+      }
+  }
   bool is_ring() const { return garment_->woven_shut; }
   void move_to(int particle, const Vec3& position);
   void move_start_to(int particle, const Vec3& position); ///< where the substep began

@@ -13,7 +13,6 @@ public:
       : sheet_(sheet), collider_(collider), kept_(kept) {}
 
   void particle(int i) {
-    if (!(sheet_.inverse_mass(i) > 0.0)) return;
     const Vec3 now = sheet_.position(i);
     const auto contact = swept_contact(sheet_.start_position(i), now, collider_);
     if (!contact) return;
@@ -73,11 +72,7 @@ std::int64_t sweep_tile(WovenSheet<T>& sheet, int block, int first, int last, co
   const WovenSheetView<T>& view = sheet.view();
   const Weave& weave = sheet.weave();
   TileSweep<T> sweep(sheet, collider, kept);
-  for (int row = first; row < last; ++row)
-    for (int lane = 0; lane < view.lanes; ++lane) {
-      const int column = sheet.column_of(block, lane);
-      if (column >= 0) sweep.particle(weave.particle(row, column));
-    }
+  sheet.for_free({block, first, last}, [&](int particle) { sweep.particle(particle); });
   for (int row = first; cells && row < std::min(last, weave.rows - 1); ++row)
     for (int lane = 0; lane < view.lanes; ++lane) {
       const int column = sheet.column_of(block, lane);

@@ -99,6 +99,10 @@ AxisMotion axis_motion(const Capsule& start, const Capsule& end) {
   return {middle, Vec3::Zero(), angle / sine * cross, to.length - from.length};
 }
 
+double farthest_way(const Capsule& start, const Capsule& end) {
+  return std::max((end.a - start.a).norm(), (end.b - start.b).norm());
+}
+
 Box swept_box(const Capsule& start, const Capsule& end) {
   const double bulges = bulge(start, end);
   Box box;
@@ -111,8 +115,8 @@ Box swept_box(const Capsule& start, const Capsule& end) {
 }
 
 Capsule swept_cover(const Capsule& start, const Capsule& end) {
-  const double way = std::max((end.a - start.a).norm(), (end.b - start.b).norm());
-  return {0.5 * (start.a + end.a), 0.5 * (start.b + end.b), start.radius + 0.5 * way + bulge(start, end), start.taper};
+  return {0.5 * (start.a + end.a), 0.5 * (start.b + end.b),
+          start.radius + 0.5 * farthest_way(start, end) + bulge(start, end), start.taper};
 }
 
 Vec3 surface_motion(const Capsule& before, const Capsule& now, const Vec3& spin_since_before, const Vec3& point) {

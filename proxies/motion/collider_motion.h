@@ -22,6 +22,9 @@ struct AxisMotion {
 };
 AxisMotion axis_motion(const Capsule& start, const Capsule& end);
 
+/// How far the farther end of the axis is from where it was, m: no point of the axis is farther.
+double farthest_way(const Capsule& start, const Capsule& end);
+
 /// A box around everything the capsule covers from start to end: that of both poses, grown by how far the arc bulges.
 Box swept_box(const Capsule& start, const Capsule& end);
 

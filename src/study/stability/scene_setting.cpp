@@ -3,6 +3,7 @@
 #include "cloth/garment/vibration.h"
 #include "cloth/solver.h"
 #include "proxies/distance/signed_distance.h"
+#include "proxies/motion/collider_motion.h"
 #include "proxies/motion/collider_set.h"
 #include "src/run/garment_reach.h"
 #include "src/run/posed_body.h"
@@ -77,9 +78,7 @@ std::vector<ProxySetting> proxies_of(const Scene& scene) {
     colliders.advance(poser.at((frame + 1) * frame_seconds));
     const proxies::SweptColliders swept = colliders.swept();
     for (std::size_t c = 0; c < speeds.size(); ++c) {
-      const double way =
-          std::max((swept.end[c].a - swept.start[c].a).norm(), (swept.end[c].b - swept.start[c].b).norm());
-      const double speed = way / frame_seconds;
+      const double speed = proxies::farthest_way(swept.start[c], swept.end[c]) / frame_seconds;
       if (speed <= k_teleport_speed) speeds[c] = std::max(speeds[c], speed); // a cut is no motion
     }
   }

@@ -55,7 +55,7 @@ void add_sweeps(const proxies::SweptColliders& colliders, std::vector<CapsuleVie
                 std::vector<LineView>& lines) {
   for (int c = 0; c < colliders.size(); ++c) {
     const proxies::Capsule &start = colliders.start[c], &end = colliders.end[c];
-    if (std::max((end.a - start.a).norm(), (end.b - start.b).norm()) < k_still) continue;
+    if (proxies::farthest_way(start, end) < k_still) continue;
     proxies::Capsule before = start;
     for (int k = 0; k < k_sweep_poses; ++k) {
       capsules.push_back(drawn(before, k_purple));

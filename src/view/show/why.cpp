@@ -179,7 +179,7 @@ WhyProxy explain_proxy(const Scene& scene, int collider, const FrameState& now) 
   why.name = collider_names(scene)[collider];
   why.frame = now.index;
   const proxies::Capsule &start = now.colliders_start[collider], &end = now.colliders_end[collider];
-  why.speed = std::max((end.a - start.a).norm(), (end.b - start.b).norm()) * scene.settings.frames_per_second;
+  why.speed = proxies::farthest_way(start, end) * scene.settings.frames_per_second;
   std::vector<Touch> touches;
   for (std::size_t g = 0; g < scene.garments.size(); ++g) {
     const cloth::Garment& garment = scene.garments[g];

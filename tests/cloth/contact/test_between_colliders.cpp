@@ -18,7 +18,7 @@ Garment sheet(int n, double size = 0.4) {
   return build_garment(description);
 }
 
-/// A wall whose surface is at x = `at`, its normal along `normal` (+1 or -1): what lacks `lacks` of what it needs.
+/// A flat surface at `distance` from a particle that is to keep `need`, m, and how far it has moved.
 NearCollider wall(int collider, const Vec3& normal, double distance, double need, const Vec3& surface = Vec3::Zero()) {
   NearCollider near;
   near.collider = collider;
@@ -106,7 +106,7 @@ TEST(BetweenColliders, LessIsAskedOfWhatHangsOnAHeldParticleWithin) {
   EXPECT_DOUBLE_EQ(BetweenColliders(build_garment(loose)).need(5, 0.002, -1.0), 0.002) << "nothing holds it";
 }
 
-/// A hanging sheet between two walls, near enough, that close on it until they overlap by `overlap`. Returns how far
+/// A hanging sheet between two limbs that close on it until they overlap by `overlap`. Returns how far
 /// the particles between them are off the middle, m, and the longest thread's strain.
 struct Pressed {
   double off_middle = 0.0, longer = 0.0;
@@ -121,7 +121,7 @@ Pressed press(int n, int substeps, double overlap) {
   FrameInput input;
   input.pins_start = input.pins_end = pins;
   input.substeps = substeps;
-  const auto walls = [&](double gap) { // the second comes from farther away
+  const auto walls = [&](double gap) {
     const double radius = 0.1, y = 0.8;
     return std::vector<proxies::Capsule>{{{-0.5, y, -radius - 0.5 * gap}, {0.5, y, -radius - 0.5 * gap}, radius},
                                          {{-0.5, y, radius + 0.5 * gap}, {0.5, y, radius + 0.5 * gap}, radius}};

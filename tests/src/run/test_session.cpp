@@ -106,8 +106,7 @@ TEST(RunTroubles, AFailureSaysWhatWasFoundWhereAndWhy) {
   session.advance_to(pose_moved(scene, Vec3::Zero()), 0.0);
   // Joints that stay where they are, and turn the skin that garments hang on: no jump, and no motion either.
   std::vector<Transform> turned = pose_moved(scene, Vec3::Zero());
-  for (Transform& local : turned)
-    local.rotation = Quat(Eigen::AngleAxisd(3.0, Vec3::UnitY())) * local.rotation;
+  for (Transform& local : turned) local.rotation = Quat(Eigen::AngleAxisd(3.0, Vec3::UnitY())) * local.rotation;
   for (int f = 0; f < 40 && !session.failure(); ++f)
     session.advance_to(f % 2 == 0 ? turned : pose_moved(scene, Vec3::Zero()), 0.0);
   std::vector<std::string> told;
