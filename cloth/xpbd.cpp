@@ -5,6 +5,7 @@
 #include "cloth/contact/triangle_contacts.h"
 #include "cloth/damping.h"
 #include "cloth/detail/solver_parts.h"
+#include "cloth/detail/woven_seams.h"
 #include "cloth/garment/elements.h"
 #include "cloth/state/tolerances.h"
 #include "cloth/woven/contacts.h"
@@ -20,10 +21,8 @@ template <class T> class Xpbd final : public Solver {
 public:
   Xpbd(const Garment& garment, const SolverOptions& options)
       : garment_(&garment), kernel_(woven_kernel<T>()), sheet_(garment, options.passes > 1), passes_(options.passes),
-        pinned_(pinned_flags(garment)), damping_(garment), contacts_(garment, options, sheet_),
+        pinned_(pinned_flags(garment)), damping_(garment), seams_(garment), contacts_(garment, options, sheet_),
         search_(garment.fabric.contact_offset(), options.swept), triangle_search_(garment, options) {
-    for (const Seam& seam : garment.seams)
-      seam_shares_.push_back(static_cast<T>(share_of_second(garment, pinned_, seam)));
     if (options.self_collision) {
       self_ = std::make_unique<SelfCollision>(garment);
       start_.resize(garment.rest_positions.size());
@@ -68,7 +67,6 @@ public:
 
 private:
   void follow_pins(const FrameInput& input, double s, double h);
-  void close_seams();
   void slow_down(const FrameInput& input, double s, double h);
   bool part_layers(double h);
   void ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s, double h);
@@ -88,8 +86,8 @@ private:
   WovenSheet<T> sheet_;
   int passes_ = 1;
   std::vector<std::uint8_t> pinned_;
-  std::vector<T> seam_shares_;
   Damping damping_;
+  WovenSeams<T> seams_;
   WovenContacts<T> contacts_;           ///< of whole vectors, where the backend leaves contacts to us
   ContactSearch search_;                ///< else, and
   TriangleContacts triangle_search_;    ///< between particles
@@ -108,11 +106,6 @@ template <class T> void Xpbd<T>::follow_pins(const FrameInput& input, double s, 
     sheet_.pin_to(garment_->pins[k].particle, (1.0 - s) * input.pins_start[k] + s * input.pins_end[k], h);
 }
 
-template <class T> void Xpbd<T>::close_seams() {
-  for (std::size_t k = 0; k < garment_->seams.size(); ++k)
-    sheet_.join(garment_->seams[k].i, garment_->seams[k].j, seam_shares_[k]);
-}
-
 /// The air, in the substep that begins at `s` of the frame.
 template <class T> void Xpbd<T>::slow_down(const FrameInput& input, double s, double h) {
   const AirInStep<proxies::PlainArithmetic> plain = air_in_step(*garment_->fabric.air, input.wind_at(s), h);
@@ -127,7 +120,7 @@ template <class T> bool Xpbd<T>::part_layers(double h) {
   sheet_.get_positions(now_);
   if (!self_->resolve(start_, now_, h)) return false;
   for (const int i : self_->moved()) sheet_.move_to(i, now_[i]);
-  close_seams();
+  seams_.join(sheet_);
   return true;
 }
 
@@ -174,7 +167,7 @@ Divergence Xpbd<T>::diverged(const FrameInput& input, const Substep& at, std::op
 template <class T> Divergence Xpbd<T>::diverged_in_constraints(const FrameInput& input, const Substep& at) {
   kernel_.predict_again(sheet_.view(), at.step);
   follow_pins(input, at.s, at.h);
-  close_seams();
+  seams_.join(sheet_);
   sheet_.get_positions(particles_.positions);
   const bool all_numbers = std::all_of(particles_.positions.begin(), particles_.positions.end(),
                                        [](const Vec3& p) { return p.allFinite(); });
@@ -228,9 +221,9 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
     const double s = static_cast<double>(substep + 1) / input.substeps;
     const Substep at{substep, s, h, step};
     follow_pins(input, s, h);
-    close_seams(); // both sides start the threads together, so that neither is torn off
+    seams_.join(sheet_); // both sides start the threads together, so that neither is torn off
     const bool whole = kernel_.constraints(view, step);
-    close_seams();
+    seams_.close(sheet_);
     time = lap(time, times_.cloth);
     if (!whole) return diverged_in_constraints(input, at);
     if (self_ && !part_layers(h)) return diverged(input, at);

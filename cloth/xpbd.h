@@ -18,8 +18,8 @@ namespace tutu::cloth {
 /// A constraint C = |x_j - x_i| - L of compliance a = 1 / K takes part with
 ///   dlambda = (-C + (1 - s) C(was) - s a/h^2 lambda) / (w_i + w_j + s a/h^2)
 /// [Macklin et al. 2016, XPBD, eq. 18 and 26]: s is what damping lets a substep take back (damping.h).
-/// Order: bending, shear, weft by Gauss-Seidel; then each warp thread as a whole (twice: the second step is Newton's
-/// answer to the first one's linearisation), then once more by Gauss-Seidel.
+/// Order: bending, shear, weft by Gauss-Seidel, weft twice more, back and forth; then each warp thread as a whole
+/// (twice: the second step is Newton's answer to the first one's linearisation), then once more by Gauss-Seidel.
 ///
 /// A contact is pushed out along its normal, at a bounded speed where it began inside; the tangential motion relative
 /// to the moving surface is taken back by at most friction * push (Coulomb, on positions).

@@ -274,7 +274,8 @@ template <class T> void pull_tethers(const WovenSheetView<T>& sheet, int block, 
 
 // ---- all constraints
 
-/// Diagonals, where asked for, and weft edges between a block and the next. True as whole() is.
+/// Diagonals, where asked for, and weft edges between a block and the next; k_repeats: diagonals more than once in a
+/// substep, as weft edges always are. True as whole() is.
 template <bool k_repeats, class T>
 bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bool first_pass, Limits<T>& limits) {
   const bool is_last = block + 1 == sheet.blocks, ends_short = has_short_lanes(sheet) && block + 2 == sheet.blocks;
@@ -283,14 +284,18 @@ bool solve_across(const WovenSheetView<T>& sheet, int block, bool with_shear, bo
   bool is_whole = true;
   for (int first = 0; first < sheet.rows && is_whole; first += k_rows_at_once) {
     const int last = std::min(first + k_rows_at_once, sheet.rows), last_cell = std::min(last, sheet.rows - 1);
-    const auto between = [&](const WovenSprings<T>& springs, T* multipliers, int down_a, int down_b, int end) HWY_ATTR {
+    const auto between = [&](const WovenSprings<T>& springs, T* multipliers, int down_a, int down_b) HWY_ATTR {
       return whole(sheet, block, limits, [&]() HWY_ATTR {
-        solve_between<k_repeats, T>(sheet, springs, multipliers, block, down_a, down_b, first, end, first_pass, limits);
+        solve_between<k_repeats, T>(sheet, springs, multipliers, block, down_a, down_b, first, last_cell, first_pass,
+                                    limits);
       });
     };
-    is_whole = (!with_shear || (between(sheet.falling, sheet.multipliers[2], 0, 1, last_cell) &&
-                                between(sheet.rising, sheet.multipliers[3], 1, 0, last_cell))) &&
-               between(sheet.weft, sheet.multipliers[1], 0, 0, last);
+    is_whole =
+        (!with_shear ||
+         (between(sheet.falling, sheet.multipliers[2], 0, 1) && between(sheet.rising, sheet.multipliers[3], 1, 0))) &&
+        whole(sheet, block, limits, [&]() HWY_ATTR {
+          solve_between<true, T>(sheet, sheet.weft, sheet.multipliers[1], block, 0, 0, first, last, first_pass, limits);
+        });
   }
   if (ends_short) {
     return_short(sheet, sheet.x);
@@ -370,22 +375,22 @@ bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T
     const bool first = pass == 0;
     for (int block = 0; block < sheet.blocks; ++block)
       if (!solve_across<k_repeats>(sheet, block, sheet.has_shear, first, limits)) return false;
+    // Weft edges hand a load on by one thread a sweep, warp threads whole. They come before these: what they are still
+    // too long by, threads do not have to mend, while what they would pull afterwards would tear threads at contacts.
+    for (int k = 0; k < step.weft_sweeps; ++k)
+      for (int n = 0; n < sheet.blocks; ++n)
+        if (!solve_across<k_repeats>(sheet, k % 2 == 0 ? sheet.blocks - 1 - n : n, false, false, limits)) return false;
     for (int block = 0; block < sheet.blocks; ++block) {
       // With one pass a thread's multipliers are needed no longer than its own solve.
       T* multipliers = sheet.multipliers[0] + (k_repeats ? place(sheet, block, 0) : 0);
       if (!solve_down(sheet, step, block, multipliers, first, limits)) return false;
     }
-    // Where few threads are held the weft carries the load: once more, the other way round.
-    if constexpr (k_repeats)
-      if (sheet.tethers.length)
-        for (int block = sheet.blocks - 1; block >= 0; --block)
-          if (!solve_across<true>(sheet, block, false, false, limits)) return false;
   }
   return hn::AllFalse(tag, limits.bad > hn::Zero(tag));
 }
 
 template <class T> bool constraints_to_break(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
-  const bool repeats = step.passes > 1 || sheet.tethers.length;
+  const bool repeats = step.passes > 1;
   const bool is_whole = repeats ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
   if (has_short_lanes(sheet)) rest_short(sheet);
   return is_whole;

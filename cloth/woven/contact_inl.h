@@ -10,7 +10,9 @@
 #include "cloth/woven/arithmetic_inl.h"
 #include "cloth/woven/hits_inl.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 HWY_BEFORE_NAMESPACE();
@@ -61,14 +63,20 @@ template <class T> HWY_INLINE Wide3<T> normal_of(const Wide3<T>& q, Wide<T> leng
           hn::IfThenElse(has_none, on_axis.z, n.z)};
 }
 
-template <bool k_tapered, bool k_kept, class T>
+template <bool k_tapered, bool k_kept, bool k_marks, class T>
 T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider, T rise,
-                     WovenHits<T>* hits) {
+                     WovenMarks<T>* marks, WovenHits<T>* hits) {
   const Tag<T> tag;
   WideCollider<T> c(collider);
   c.radius = set(collider.radius + rise);
   const Wide<T> far = set(std::numeric_limits<T>::max()), squared_radius = c.radius * c.radius;
-  Wide<T> least = far; // distance from the surface; of a plain capsule squared distance from the axis
+  Wide<T> least = far;                 // distance from the surface; of a plain capsule squared distance from the axis
+  Wide<T> nearest = far, marked = far; // the same of all particles, and within which rows are marked
+  if constexpr (k_marks) {
+    const T reach = collider.radius + rise + marks->within;
+    marked = set(k_tapered ? marks->within : reach * reach);
+    std::fill_n(marks->rows, rows.last - rows.first, std::uint8_t{0});
+  }
   for_rows(sheet, rows.block, rows.first, rows.last, [&](std::ptrdiff_t at, int row, int lane) HWY_ATTR {
     const Wide3<T> x = load(sheet.x, at), d = minus(x, c.a);
     const Wide<T> t = Forms<T>::template nearest_on_axis<k_tapered>(c, d);
@@ -76,6 +84,10 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, cons
     const Wide3<T> q = minus_times<T>(d, t, c.axis);
     const Wide<T> squared = dot(q, q), length = k_tapered ? length_of<T>(q) : squared;
     const Wide<T> beyond = k_tapered ? length - radius : squared;
+    if constexpr (k_marks) {
+      nearest = hn::Min(nearest, beyond);
+      if (!hn::AllFalse(tag, beyond < marked)) marks->rows[row - rows.first] = 1;
+    }
     const auto is_free = load(row_of(sheet.own_inverse_mass, rows.block, row) + lane) > hn::Zero(tag);
     least = hn::Min(least, hn::IfThenElse(is_free, beyond, far));
     const auto is_hit = hn::And(is_free, k_tapered ? beyond < hn::Zero(tag) : squared < squared_radius);
@@ -89,18 +101,29 @@ T contact_capsule_as(const WovenSheetView<T>& sheet, const WovenRows& rows, cons
     store(plus(x, pushed.moved), sheet.x, at);
     count_particles<k_kept>(*hits, is_hit, at, x, n, depth, pushed);
   });
-  const T nearest = hn::GetLane(hn::MinOfLanes(tag, least));
-  return k_tapered ? nearest : std::sqrt(nearest) - (collider.radius + rise);
+  const auto gap = [&](Wide<T> all) HWY_ATTR {
+    const T one = hn::GetLane(hn::MinOfLanes(tag, all));
+    return k_tapered ? one : std::sqrt(one) - (collider.radius + rise);
+  };
+  if constexpr (k_marks) marks->nearest = gap(nearest);
+  return gap(least);
+}
+
+template <bool k_tapered, bool k_kept, class T>
+T contact_capsule_marking(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
+                          T rise, WovenMarks<T>* marks, WovenHits<T>* hits) {
+  return marks ? contact_capsule_as<k_tapered, k_kept, true>(sheet, rows, collider, rise, marks, hits)
+               : contact_capsule_as<k_tapered, k_kept, false>(sheet, rows, collider, rise, marks, hits);
 }
 
 template <class T>
 T contact_capsule(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider, T rise,
-                  WovenHits<T>* hits) {
+                  WovenMarks<T>* marks, WovenHits<T>* hits) {
   const bool is_tapered = collider.taper != T(0);
-  const auto contact = hits->keep
-                           ? (is_tapered ? contact_capsule_as<true, true, T> : contact_capsule_as<false, true, T>)
-                           : (is_tapered ? contact_capsule_as<true, false, T> : contact_capsule_as<false, false, T>);
-  return contact(sheet, rows, collider, rise, hits);
+  const auto contact =
+      hits->keep ? (is_tapered ? contact_capsule_marking<true, true, T> : contact_capsule_marking<false, true, T>)
+                 : (is_tapered ? contact_capsule_marking<true, false, T> : contact_capsule_marking<false, false, T>);
+  return contact(sheet, rows, collider, rise, marks, hits);
 }
 
 template <bool k_kept, class T>
@@ -259,34 +282,56 @@ private:
   std::int64_t touched_;
 };
 
-template <class T> T widest(const WovenCollider<T>& c) { return c.radius + (c.taper > T(0) ? c.taper : T(0)); }
+/// The corners of a cell around the middle of two of them: `b` and the one opposite to it.
+template <class T> class CellAround {
+public:
+  HWY_INLINE CellAround(const Wide3<T>& middle, const Wide3<T>& a, const Wide3<T>& b, const Wide3<T>& e)
+      : to_a_(minus(a, middle)), to_b_(minus(b, middle)), to_e_(minus(e, middle)) {}
+
+  /// Whether any of the cell may be within `radius` of what is convex and from which its middle is `away`, at the
+  /// nearest. Distance from that is convex too: nowhere is it less than what it grows to by its slope at the middle,
+  /// |away| + away . to / |away|, which is least at a corner. Each lane answers for itself: the answer must not depend
+  /// on how many there are.
+  HWY_INLINE auto may_be_within(Wide<T> radius, const Wide3<T>& away) const {
+    const Wide<T> squared = dot(away, away);
+    const Wide<T> least = hn::Min(hn::Neg(hn::Abs(dot(away, to_b_))), hn::Min(dot(away, to_a_), dot(away, to_e_)));
+    return squared + least <= radius * hn::Sqrt(squared);
+  }
+
+private:
+  Wide3<T> to_a_, to_b_, to_e_;
+};
+
+/// m from the axis of a collider that nothing of it is beyond, with more than the rounding of what is asked.
+template <class T> T reach_of(const WovenCollider<T>& c) {
+  return c.radius + (c.taper > T(0) ? c.taper : T(0)) + T(1e-6);
+}
 
 /// Weft edges and diagonals alone, for cells so low that nothing pokes between the two.
 template <bool k_tapered, bool k_kept, class T>
 void contact_low_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
-                       const CellFeatures<T>& features, WovenHits<T>* hits) {
+                       const std::uint8_t* asked, WovenHits<T>* hits) {
   const Tag<T> tag;
   const WideCollider<T> c(collider);
   const int block = rows.block;
   const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
-  const T around = widest(collider) + features.around;
-  const Wide<T> squared_reach = set(around * around);
   const auto width = static_cast<int>(hn::Lanes(tag));
   const int cells = lanes_in(sheet, block);
-  for (int row = rows.first; row < rows.last; ++row)
+  const Wide<T> radius = set(reach_of(collider));
+  for (int row = rows.first; row < rows.last; ++row) {
+    if (!asked[row - rows.first]) continue;
     for (int lane = 0; lane < cells; lane += width) {
-      const std::ptrdiff_t at_a = place(sheet, block, row) + lane, at_b = place(sheet, block + 1, row) + lane;
-      const Wide3<T> m = minus(times(half, plus(load(sheet.x, at_a), load(sheet.x, at_b))), c.a);
-      const Wide3<T> away = minus_times<T>(m, Forms<T>::template nearest_on_axis<false>(c, m), c.axis);
-      // Each lane for itself: the answer must not depend on how many there are.
-      const auto near = hn::And(dot(away, away) < squared_reach, hn::Iota(tag, lane) < set(static_cast<T>(cells)));
-      if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
+      const bool has_below = row + 1 < sheet.rows;
       Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
+      Corner<T> d = corner(sheet, block, has_below ? row + 1 : row, lane);
+      const Wide3<T> middle = times(half, plus(a.x, b.x)), m = minus(middle, c.a);
+      const Wide3<T> away = minus_times<T>(m, Forms<T>::template nearest_on_axis<false>(c, m), c.axis);
+      const auto is_cell = hn::Iota(tag, lane) < set(static_cast<T>(cells));
+      const auto near = hn::And(CellAround<T>(middle, d.x, b.x, d.x).may_be_within(radius, away), is_cell);
+      if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
       const auto exists = hn::And(near, load(row_of(sheet.weft.compliance, block, row) + lane) < real);
       CellContact<k_tapered, k_kept, T> contact(sheet, collider, c, *hits, a.at);
       contact.edge(a, b, exists);
-      const bool has_below = row + 1 < sheet.rows;
-      Corner<T> d = corner(sheet, block, has_below ? row + 1 : row, lane);
       if (has_below) contact.edge(b, d, exists);
       if (contact.touched() == 0) continue;
       hits->count += contact.touched();
@@ -294,13 +339,14 @@ void contact_low_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, co
       store(b.x, sheet.x, b.at);
       if (has_below) store(d.x, sheet.x, d.at);
     }
+  }
 }
 
 template <bool k_tapered, bool k_kept, class T>
 void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
-                      const CellFeatures<T>& features, WovenHits<T>* hits) {
+                      CellFeatures features, const std::uint8_t* asked, WovenHits<T>* hits) {
   if (!features.high) {
-    contact_low_cells<k_tapered, k_kept>(sheet, rows, collider, features, hits);
+    contact_low_cells<k_tapered, k_kept>(sheet, rows, collider, asked, hits);
     return;
   }
   const Tag<T> tag;
@@ -310,22 +356,18 @@ void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, con
   const auto real = set(T(0.5 * k_no_constraint)), half = set(T(0.5));
   const auto width = static_cast<int>(hn::Lanes(tag));
   const int cells = lanes_in(sheet, block);
-  for (int row = rows.first; row < rows.last; ++row)
+  const Wide<T> radius = set(reach_of(collider));
+  for (int row = rows.first; row < rows.last; ++row) {
+    if (!asked[row - rows.first]) continue;
     for (int lane = 0; lane < cells; lane += width) {
       const bool has_below = row + 1 < sheet.rows;
       Corner<T> a = corner(sheet, block, row, lane), b = corner(sheet, block + 1, row, lane);
       Corner<T> d = has_below ? corner(sheet, block, row + 1, lane) : a;
       Corner<T> e = has_below ? corner(sheet, block + 1, row + 1, lane) : b;
-      // A cell lies as far around its middle as its farthest corner. Each lane for itself: the answer must not depend
-      // on how many there are.
       const Wide3<T> middle = times(half, plus(b.x, d.x)), m = minus(middle, c.a);
-      const Wide3<T> to_b = minus(b.x, middle), to_a = minus(a.x, middle), to_e = minus(e.x, middle);
-      const Wide<T> reach = set(widest(collider)) +
-                            hn::Sqrt(hn::Max(dot(to_b, to_b), hn::Max(dot(to_a, to_a), dot(to_e, to_e)))) +
-                            set(T(1e-6));
-      const Wide<T> squared_reach = reach * reach;
       const Wide3<T> away = minus_times<T>(m, Forms<T>::template nearest_on_axis<false>(c, m), c.axis);
-      const auto near = hn::And(dot(away, away) < squared_reach, hn::Iota(tag, lane) < set(static_cast<T>(cells)));
+      const auto is_cell = hn::Iota(tag, lane) < set(static_cast<T>(cells));
+      const auto near = hn::And(CellAround<T>(middle, a.x, b.x, e.x).may_be_within(radius, away), is_cell);
       if (HWY_LIKELY(hn::AllFalse(tag, near))) continue;
 
       // Each feature is looked at where the ones before it left its corners.
@@ -335,9 +377,11 @@ void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, con
       if (has_below) {
         contact.edge(a, d, near);
         contact.edge(b, d, exists);
+        const Wide3<T> now = times(half, plus(b.x, d.x)), from_a = minus(now, c.a); // edges may have moved all corners
+        const CellAround<T> around_now(now, a.x, b.x, e.x);
         for (int end = 0; end < ends; ++end) {
-          const Wide3<T> to_end = end == 0 ? m : minus(m, c.axis);
-          const auto near_end = hn::And(exists, dot(to_end, to_end) < squared_reach); // each lane for itself
+          const auto near_end =
+              hn::And(exists, around_now.may_be_within(radius, end == 0 ? from_a : minus(from_a, c.axis)));
           if (hn::AllFalse(tag, near_end)) continue;
           contact.face(static_cast<T>(end), a, d, b, near_end);
           contact.face(static_cast<T>(end), e, b, d, near_end);
@@ -351,15 +395,16 @@ void contact_cells_as(const WovenSheetView<T>& sheet, const WovenRows& rows, con
       store(d.x, sheet.x, d.at);
       store(e.x, sheet.x, e.at);
     }
+  }
 }
 
 template <class T>
 void contact_cells(const WovenSheetView<T>& sheet, const WovenRows& rows, const WovenCollider<T>& collider,
-                   const CellFeatures<T>& features, WovenHits<T>* hits) {
+                   CellFeatures features, const std::uint8_t* asked, WovenHits<T>* hits) {
   const bool is_tapered = collider.taper != T(0);
   const auto contact = hits->keep ? (is_tapered ? contact_cells_as<true, true, T> : contact_cells_as<false, true, T>)
                                   : (is_tapered ? contact_cells_as<true, false, T> : contact_cells_as<false, false, T>);
-  contact(sheet, rows, collider, features, hits);
+  contact(sheet, rows, collider, features, asked, hits);
 }
 
 } // namespace tutu::cloth::HWY_NAMESPACE

@@ -23,8 +23,6 @@ constexpr int k_pinched_for = 16, k_beside_pinched = 9, k_suspect = 1;
 /// Substeps for which nobody looks again at a tile that was not; Tile::pinched is below 0.
 constexpr int k_unsuspected_for = 7;
 
-constexpr int k_tile_rows = 8; // of 16 particles: small enough for few colliders, large enough to ask once for many
-
 template <class T> void copy(const Vec3& from, T* to) {
   for (int axis = 0; axis < 3; ++axis) to[axis] = static_cast<T>(from[axis]);
 }
@@ -82,6 +80,7 @@ void WovenContacts<T>::begin_frame(proxies::CollisionQuery& query, const FrameIn
     pinched_cloth_.reserve(placed_.size() + 1);
   }
   colliders_.resize(placed_.size());
+  marks_.resize(placed_.size() * static_cast<std::size_t>(sheet.view().blocks * sheet.view().rows));
   for (Tile& tile : tiles_) tile.margin = k_least_tile_margin + k_margin_growth * tile.speed * input.seconds;
   find_pairs(query, sheet);
 }
@@ -176,6 +175,7 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
   const int ground = static_cast<int>(placed_.size());
   const bool any_pinched = std::ranges::any_of(tiles_, [](const Tile& tile) { return tile.pinched > 0; });
   if (any_pinched) pinched_cloth_.begin(sheet);
+  std::ranges::fill(marks_, std::uint8_t{0});
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     Tile& tile = tiles_[t];
     if (tile.pinched < 0) ++tile.pinched;
@@ -193,13 +193,18 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
         pair.in_haste = motion >= hasty && features_ != ContactFeatures::particles;
         if (motion >= safe) sweep(sheet, tile, pair);
       }
-      if (travelled < pair.wake) continue;
+      if (travelled < pair.wake && !(pair.features.wide && travelled >= pair.cells_wake)) continue;
       ++counts_.queries;
+      WovenMarks<T> marks;
+      if (pair.features.wide)
+        marks = {static_cast<T>(pair.within), marks_of(view, pair.collider, tile.rows.block) + tile.rows.first, 0};
       const T gap = pair.collider == ground
                         ? kernel.contact_plane(view, tile.rows, *ground_, &hits)
-                        : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider], pair.rise, &hits);
+                        : kernel.contact_capsule(view, tile.rows, colliders_[pair.collider], pair.rise,
+                                                 pair.features.wide ? &marks : nullptr, &hits);
       if (keeper_.keeps()) take(pair, static_cast<double>(pair.rise));
       pair.wake = travelled + static_cast<double>(gap) - k_tile_travel_slack;
+      pair.cells_wake = travelled + static_cast<double>(marks.nearest) - pair.within - k_tile_travel_slack;
       const double moved = pair.collider == ground ? 0.0 : static_cast<double>(colliders_[pair.collider].moved);
       if (tile.pinched == 0 && -static_cast<double>(gap) > moved + k_left_deep) tile.pinched = k_suspect;
     }
@@ -228,6 +233,7 @@ template <class T> bool WovenContacts<T>::settle(WovenSheet<T>& sheet, std::size
   for (int p = begin_[t]; p < begin_[t + 1] && k < asked_.size(); ++p) {
     if (pairs_[p].collider != asked_[k].collider) continue;
     pairs_[p].wake = tile.travelled + collider_travel_[pairs_[p].collider] + asked_[k].gap - k_tile_travel_slack;
+    pairs_[p].cells_wake = 0.0;
     ++k;
   }
   counts_.queries += static_cast<std::int64_t>(asked_.size());
@@ -277,8 +283,14 @@ template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(con
   pair.collider = collider;
   const bool is_flat = collider == static_cast<int>(placed_.size()); // a plane meets the corners first
   if (is_flat || features_ == ContactFeatures::particles) return pair;
+  const double offset = placed_[collider].narrowest() + offset_;
+  // The square of the distance to what is convex bends no more than that to a point. Between two corners of a cell it
+  // is less than theirs by a quarter of the squared distance between them at most, as it is on their triangle.
+  const double longest = k_cell_stretch * std::hypot(tile.weft, tile.warp);
+  const double within = std::sqrt(offset * offset + 0.25 * longest * longest) - offset;
   if (features_ == ContactFeatures::triangles) {
-    pair.features = all_features(tile);
+    pair.features = {true, true};
+    pair.within = within;
     return pair;
   }
   const double radius = placed_[collider].narrowest(), clear = radius - k_tolerated_poke;
@@ -286,7 +298,7 @@ template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(con
   // The middle of a triangle bent around the collider with legs of length h lies (2/9) h^2 within the square of its
   // corners' distance from the axis: it clears all but k_tolerated_poke when the corners keep this from the axis.
   const double longer = std::max(weft, warp), kept = clear * clear + 2.0 / 9.0 * longer * longer;
-  const double floating = radius + offset_ + k_most_rise, offset = radius + offset_;
+  const double floating = offset + k_most_rise;
   pair.fits_through = k_torn_cell * std::max(tile.weft, tile.warp) > 2.0 * offset;
   if (kept <= floating * floating) {
     pair.rise = static_cast<T>(kept > offset * offset ? std::sqrt(kept) - offset : 0.0);
@@ -296,13 +308,37 @@ template <class T> typename WovenContacts<T>::Pair WovenContacts<T>::pair_of(con
   // along the warp, edges along the weft and diagonals are enough: all of a triangle lies on such lines between two of
   // them.
   const auto pokes = [&](double length) { return 0.25 * length * length > offset * offset - clear * clear; };
-  pair.features = {static_cast<T>(0.4 * tile.reach), pokes(weft) || pokes(warp), pokes(warp)};
+  pair.features = {pokes(weft) || pokes(warp), pokes(warp)};
+  if (pair.features.wide) pair.within = within;
   return pair;
 }
 
 template <class T> void WovenContacts<T>::take(const Pair& pair, double rise) {
   if (pair.collider == static_cast<int>(placed_.size())) keeper_.take(pair.collider, offset_);
   else keeper_.take(pair.collider, placed_[pair.collider], offset_ + rise);
+}
+
+/// Of the cells of a tile those with a corner that is near to the collider.
+template <class T>
+bool WovenContacts<T>::find_asked_rows(const WovenSheetView<T>& view, const Tile& tile, const Pair& pair) {
+  const auto& [block, first, last] = tile.rows;
+  if (pair.in_haste) {
+    asked_rows_.fill(1);
+    return pair.wake - tile.travelled - collider_travel_[pair.collider] <= tile.reach;
+  }
+  if (!pair.features.wide) return false;
+  const std::uint8_t* left = marks_of(view, pair.collider, block);
+  const std::uint8_t* right = marks_of(view, pair.collider, (block + 1) % view.blocks);
+  const std::uint8_t* turned = needs_halo(view, block) ? marks_of(view, pair.collider, 0) : right;
+  const auto is_near = [&](int row) { return left[row] | right[row] | turned[row]; };
+  int above = is_near(first), any = 0;
+  for (int row = first; row < last; ++row) {
+    const int below = row + 1 < view.rows ? is_near(row + 1) : 0;
+    asked_rows_[row - first] = static_cast<std::uint8_t>(above | below);
+    any |= above | below;
+    above = below;
+  }
+  return any != 0;
 }
 
 template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view) {
@@ -315,14 +351,13 @@ template <class T> void WovenContacts<T>::resolve_cells(const WovenKernel<T>& ke
     if (is_pinched_around(t)) continue;
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) {
       const Pair& pair = pairs_[p];
-      const double gap = pair.wake - tile.travelled - collider_travel_[pair.collider];
-      if (!(pair.features.wide || pair.in_haste) || gap > (pair.in_haste ? tile.reach : reach_of(tile, pair))) continue;
+      if (!find_asked_rows(view, tile, pair)) continue;
       if (!has_halo && needs_halo(view, tile.rows.block)) {
         kernel.fetch_halo(view);
         has_halo = true;
       }
       kernel.contact_cells(view, tile.rows, colliders_[pair.collider],
-                           pair.in_haste ? all_features(tile) : pair.features, &hits);
+                           pair.in_haste ? CellFeatures{true, true} : pair.features, asked_rows_.data(), &hits);
       if (keeper_.keeps()) take(pair, 0.0);
     }
     tile.touched = tile.touched || hits.count != before;

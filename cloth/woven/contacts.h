@@ -8,6 +8,8 @@
 #include "cloth/woven/sheet.h"
 #include "proxies/query/collision_query.h"
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 namespace tutu::cloth {
@@ -19,6 +21,9 @@ namespace tutu::cloth {
 /// distance is 1-Lipschitz, so a pair at distance d stays apart until the tile's fastest particle and the collider have
 /// together travelled d. The same sum says when the frame's boxes no longer cover a tile; then it looks for colliders
 /// anew.
+inline constexpr int k_tile_rows =
+    8; ///< of 16 particles: small enough for few colliders, large enough to ask once for many
+
 template <class T> class WovenContacts {
 public:
   /// `sheet`: of the garment, for its blocks.
@@ -60,10 +65,12 @@ private:
   struct Pair {
     int collider = 0;
     T rise = 0; ///< m
-    CellFeatures<T> features;
+    CellFeatures features;
+    double within = 0.0;       ///< m: only cells with a corner so near to the surface may meet it
     bool fits_through = false; ///< the collider, between two corners that a blow tears apart
     bool in_haste = false;     ///< in this substep
-    double wake = 0.0;         ///< sum of travels at which the two may meet
+    double wake = 0.0;         ///< sum of travels at which the two may meet,
+    double cells_wake = 0.0;   ///< and at which its cells may
   };
 
   void find_pairs(proxies::CollisionQuery& query, const WovenSheet<T>& sheet);
@@ -73,13 +80,13 @@ private:
   bool settle(WovenSheet<T>& sheet, std::size_t t, double h);
   void spread_pinches();
   bool is_pinched_around(std::size_t t) const;
+  std::uint8_t* marks_of(const WovenSheetView<T>& view, int collider, int block) {
+    return marks_.data() + static_cast<std::ptrdiff_t>(collider * view.blocks + block) * view.rows;
+  }
+  /// Into asked_rows_; false where there are none.
+  bool find_asked_rows(const WovenSheetView<T>& view, const Tile& tile, const Pair& pair);
   void resolve_cells(const WovenKernel<T>& kernel, const WovenSheetView<T>& view);
   void take(const Pair& pair, double rise); ///< what a call met, for who watches
-  /// Low cells are looked for within a fifth more than they are at rest, others within k_cell_stretch, m.
-  static double reach_of(const Tile& tile, const Pair& pair) {
-    return pair.features.high ? tile.reach : 2.0 * static_cast<double>(pair.features.around);
-  }
-  static CellFeatures<T> all_features(const Tile& tile) { return {static_cast<T>(0.5 * tile.reach), true, true}; }
   /// How the cells of a tile are kept from a collider of this radius.
   Pair pair_of(const Tile& tile, int collider) const;
 
@@ -97,7 +104,11 @@ private:
   std::vector<proxies::Capsule> placed_, placed_before_;
   std::vector<WovenCollider<T>> colliders_;
   std::optional<WovenPlane<T>> ground_;
-  std::vector<double> collider_travel_;  ///< m since pairs were found; the ground, last, stays at 0
+  std::vector<double> collider_travel_; ///< m since pairs were found; the ground, last, stays at 0
+  /// Of each collider, block and row: whether a particle of it is within what may let its cells meet the collider, in
+  /// this substep. Particles that other colliders push there later in it are met in the next.
+  std::vector<std::uint8_t> marks_;
+  std::array<std::uint8_t, k_tile_rows> asked_rows_ = {};
   double s_before_ = 0.0, s_step_ = 0.0; ///< of the frame
   PinchedCloth<T> pinched_cloth_;
   std::vector<AskedCollider> asked_;

@@ -73,7 +73,7 @@ template <class T> struct WovenSheetView {
   WovenBends<T> warp_bend, weft_bend;
   bool has_shear = false, has_bend = false;
   WovenTethers<T> tethers;
-  T* multipliers[4] = {}; ///< of warp, weft, falling, rising: used when a substep has more than one pass, or tethers
+  T* multipliers[4] = {}; ///< of warp, weft, falling, rising; those of diagonals only for more than one pass
   T* workspace = nullptr; ///< 6 blocks, for the line solve
 };
 
@@ -95,6 +95,7 @@ template <class T> struct WovenStep {
   T taken = 1, elastic = 0; ///< as those of DampedStep (cloth/damping.h)
   T fastest = 0;            ///< m/s; faster particles are slowed to this
   int passes = 1;           ///< over all constraints
+  int weft_sweeps = 2;      ///< Gauss-Seidel over the weft edges, a pass, back and forth, beyond the first
   int newton_steps = 2;     ///< of each thread's line solve, a pass
   int closing_sweeps = 1;   ///< Gauss-Seidel over the warp edges after it
 };
@@ -131,10 +132,16 @@ template <class T> struct WovenCollider : WovenSurface<T> {
 };
 
 /// Which features of a cell are asked besides its corners.
-template <class T> struct CellFeatures {
-  T around = 0;      ///< m: no cell reaches farther from its middle
+struct CellFeatures {
   bool wide = false; ///< weft edges and diagonals
   bool high = false; ///< warp edges and faces as well
+};
+
+/// Rows of a tile that a collider is near to, for who asks about their cells next: pinned particles too.
+template <class T> struct WovenMarks {
+  T within = 0;                 ///< m from the collider's surface (with the offset and `rise`)
+  std::uint8_t* rows = nullptr; ///< one a row, from the first: set to whether a particle of it is
+  T nearest = 0;                ///< m, set to how far the nearest is
 };
 
 /// The half space normal . x <= offset.
@@ -192,16 +199,18 @@ template <class T> struct WovenKernel {
   void (*bounds)(Sheet, int block, int first, int last, T* low, T* high);
 
   /// Pushes free particles out of a collider and rubs. Returns the smallest distance of a free one to the surface (with
-  /// the offset) before that, m, and adds to `hits`. `rise` adds to the collider's radius.
-  T (*contact_capsule)(Sheet, const WovenRows&, const WovenCollider<T>&, T rise, WovenHits<T>* hits);
+  /// the offset) before that, m, marks rows (null: none), and adds to `hits`. `rise` adds to the collider's radius.
+  T(*contact_capsule)
+  (Sheet, const WovenRows&, const WovenCollider<T>&, T rise, WovenMarks<T>* marks, WovenHits<T>* hits);
   T (*contact_plane)(Sheet, const WovenRows&, const WovenPlane<T>&, WovenHits<T>* hits);
 
-  /// Edges and faces of the cells between a block and the next, from row `first` to the one below `last` - 1. Before
+  /// Edges and faces of the cells between a block and the next, from row `first` to the one below `last` - 1, of rows
+  /// that are `asked`, one number a row; cells no corner of which can reach the collider are passed over. Before
   /// those of the first block that needs_halo() the halo must be fetched (positions and starts), and given back after
   /// the last block's.
   void (*fetch_halo)(Sheet);
-  void (*contact_cells)(Sheet, const WovenRows&, const WovenCollider<T>&, const CellFeatures<T>& features,
-                        WovenHits<T>* hits);
+  void (*contact_cells)(Sheet, const WovenRows&, const WovenCollider<T>&, CellFeatures features,
+                        const std::uint8_t* asked, WovenHits<T>* hits);
   void (*return_halo)(Sheet);
 };
 

@@ -88,9 +88,9 @@ WovenSheet<T>::WovenSheet(const Garment& garment, bool with_multipliers) : garme
     for (int axis = 0; axis < 3; ++axis) field[axis] = array(size);
   view_.workspace = array(6 * static_cast<std::size_t>(view_.block_stride));
   const bool tethered = is_held_at_few_places(weave_, garment);
-  with_multipliers = with_multipliers || tethered; // some edges are solved twice then
   view_.multipliers[0] = array(with_multipliers ? size : view_.block_stride);
-  for (int k = 1; k < 4; ++k) view_.multipliers[k] = with_multipliers ? array(size) : nullptr;
+  view_.multipliers[1] = array(size);
+  for (int k = 2; k < 4; ++k) view_.multipliers[k] = with_multipliers ? array(size) : nullptr;
 
   elements_.resize(garment.particle_count());
   const auto element = [&](int block, int row, int lane) {

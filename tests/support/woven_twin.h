@@ -103,7 +103,7 @@ public:
     whole_ = true;
     for (std::vector<Edge>* family : {&warp_, &weft_, &falling_, &rising_})
       for (Edge& edge : *family) edge.lambda = 0.0;
-    const bool repeats = step.passes > 1 || !tethers_.empty();
+    const bool repeats = step.passes > 1;
     if (garment_->fabric.bend > 0.0) bend(step);
     for (const cloth::Tether& tether : tethers_) {
       const Vec3 d = x[tether.particle] - x[tether.anchor];
@@ -118,9 +118,12 @@ public:
           if (garment_->fabric.shear > 0.0)
             for (std::vector<Edge>* family : {&falling_, &rising_})
               for_block(block, first, last_cell, [&](int i) { solve((*family)[i], step, repeats); });
-          for_block(block, first, last, [&](int i) { solve(weft_[i], step, repeats); });
+          for_block(block, first, last, [&](int i) { solve(weft_[i], step, true); });
         }
       }
+      for (int k = 0; k < step.weft_sweeps; ++k)
+        for (int n = 0; n < blocks_; ++n)
+          for_block(k % 2 == 0 ? blocks_ - 1 - n : n, 0, rows_, [&](int i) { solve(weft_[i], step, true); });
       for (int block = 0; block < blocks_; ++block) {
         for (int k = 0; k < step.newton_steps; ++k) for_block(block, 0, 1, [&](int i) { solve_thread(i, step); });
         for (int k = 0; k < step.closing_sweeps; ++k)
@@ -129,9 +132,6 @@ public:
               for (int row = begin; row < std::min(first + k_rows_at_once, rows_ - 1); row += 2)
                 for_block(block, row, row + 1, [&](int i) { solve(warp_[i], step, true); });
       }
-      if (tethers_.empty()) continue;
-      for (int block = blocks_ - 1; block >= 0; --block)
-        for_block(block, 0, rows_, [&](int i) { solve(weft_[i], step, true); });
     }
     return whole_;
   }

@@ -163,7 +163,7 @@ void dancer_pins(const cloth::Garment& skirt, double t, DancerMotion motion, std
 }
 
 int default_substeps(cloth::SolverKind solver, int n) {
-  const double at_thirty = solver == cloth::SolverKind::xpbd ? 2.8 : 32.0;
+  const double at_thirty = solver == cloth::SolverKind::xpbd ? 2.34 : 32.0;
   return static_cast<int>(std::ceil(at_thirty * n / 30.0));
 }
 
