@@ -57,6 +57,7 @@ SubstepPlan plan_substeps(const FrameInput& input, const Extent& garment, double
   const double cloth_way = std::max(garment.fastest * input.seconds, fastest_pin_way(input));
   double most = input.substeps;
   for (int c = 0; c < input.colliders.size(); ++c) {
+    if (!input.colliders.meets(c)) continue;
     const proxies::Capsule &start = input.colliders.start[c], &end = input.colliders.end[c];
     const double half_turn = half_turn_of(input.colliders, c);
     const double chord = proxies::farthest_way(start, end);

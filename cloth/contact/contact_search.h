@@ -152,6 +152,7 @@ void ContactSearch::for_each_contact(proxies::CollisionQuery& query, double s, s
     for (int collider = 0; collider <= colliders_.body_index(); ++collider) {
       if (collider == colliders_.ground_index() && !colliders_.ground) continue;
       if (collider == colliders_.body_index() && !colliders_.has_body()) continue;
+      if (!colliders_.meets(collider)) continue;
       if (std::binary_search(asked.begin(), asked.end(), collider)) continue;
       const proxies::MeshContact contact = ask(query, x, collider);
       ++counts_.queries;

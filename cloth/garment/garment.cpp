@@ -247,6 +247,7 @@ Garment build_garment(const GarmentDescription& description) {
   Garment garment;
   garment.name = description.name;
   garment.fabric = description.fabric;
+  garment.met = description.met;
   garment.colour = description.colour;
   std::visit([&](const auto& shape) { build_shape(shape, description, garment); }, description.shape);
   add_pins(description, garment);

@@ -98,12 +98,20 @@ struct Attachment {
   bool by_place() const { return within || above; }
 };
 
+/// Which colliders a garment meets, by names of proxies or of the joints that carry them. The ground is always met.
+struct MetColliders {
+  enum class Which : std::uint8_t { all, all_but, only };
+  Which which = Which::all;
+  std::vector<std::string> names; ///< none for all
+};
+
 struct GarmentDescription {
   std::string file; ///< for messages
   std::string name;
   std::variant<GridShape, TubeShape, DiscShape, MeshShape> shape;
   Fabric fabric;
   std::vector<Attachment> attachments;
+  MetColliders met;
   std::array<float, 3> colour = {0.7f, 0.2f, 0.25f}; ///< linear RGB, for drawing only
 };
 
@@ -147,6 +155,7 @@ struct Garment {
   std::vector<Pin> pins;
   std::vector<std::array<std::uint32_t, 3>> triangles; ///< normals point out of a tube, towards across x down of a grid
   Fabric fabric;
+  MetColliders met;
   bool pressed = false; ///< keeps the angles of its rest shape; a mesh only: threads are always straight at rest
   std::array<float, 3> colour = {};
 

@@ -235,13 +235,26 @@ Attachment read_attachment(const JsonValue& json) {
   return attachment;
 }
 
+MetColliders read_met_colliders(const JsonValue& json) {
+  MetColliders met;
+  for (const auto& [key, which] :
+       {std::pair("ignore", MetColliders::Which::all_but), {"only", MetColliders::Which::only}}) {
+    const auto names = json.find(key);
+    if (!names) continue;
+    if (met.which != MetColliders::Which::all) throw names->error("either ignore or only");
+    met.which = which;
+    for (const JsonValue& name : names->items()) met.names.push_back(name.string());
+  }
+  return met;
+}
+
 } // namespace
 
 Fabric read_fabric(const fs::path& file) { return read_fabric_file(file).whole(); }
 
 GarmentDescription read_garment(const std::filesystem::path& file) {
   const JsonValue json = JsonValue::read(file);
-  json.only_keys({"name", "shape", "fabric", "attachments", "colour"});
+  json.only_keys({"name", "shape", "fabric", "attachments", "ignore", "only", "colour"});
   GarmentDescription description;
   description.file = file.string();
   description.name = json.has("name") ? json.at("name").string() : plain_text(file.stem().string());
@@ -249,6 +262,7 @@ GarmentDescription read_garment(const std::filesystem::path& file) {
   if (const auto fabric = json.find("fabric")) description.fabric = fabric_of(*fabric);
   if (const auto attachments = json.find("attachments"))
     for (const JsonValue& item : attachments->items()) description.attachments.push_back(read_attachment(item));
+  description.met = read_met_colliders(json);
   if (const auto colour = json.find("colour")) {
     const std::vector<double> rgb = colour->numbers(3);
     for (int c = 0; c < 3; ++c) {

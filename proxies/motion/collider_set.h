@@ -5,6 +5,7 @@
 #include "proxies/motion/collider_motion.h"
 #include "proxies/shapes.h"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,7 +23,10 @@ struct SweptColliders {
   /// The true body, for the backend that collides with it: its vertices at both ends of the frame, world, m. They go on
   /// straight lines. Empty: there is none.
   std::span<const Vec3f> body_start = {}, body_end = {};
+  /// Not 0 of each collider that whoever asks does not meet: it is no candidate of anything. Empty: all are met.
+  std::span<const std::uint8_t> ignored = {};
 
+  bool meets(int collider) const { return ignored.empty() || collider >= size() || ignored[collider] == 0; }
   int size() const { return static_cast<int>(start.size()); }
   int ground_index() const { return size(); }
   bool has_body() const { return !body_start.empty(); }

@@ -53,8 +53,13 @@ void start_rows(Candidates& out) {
   out.colliders.clear();
 }
 
-/// Ends the row of a point or box: the ground comes last.
+/// Ends the row of a point or box: without colliders that are not met, and the ground comes last.
 void end_row(const SweptColliders& colliders, Candidates& out) {
+  if (!colliders.ignored.empty()) {
+    const auto is_ignored = [&](int collider) { return !colliders.meets(collider); };
+    const auto row = out.colliders.begin() + out.begin.back();
+    out.colliders.erase(std::remove_if(row, out.colliders.end(), is_ignored), out.colliders.end());
+  }
   if (colliders.ground) out.colliders.push_back(colliders.ground_index());
   out.begin.push_back(static_cast<int>(out.colliders.size()));
 }

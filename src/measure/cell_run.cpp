@@ -36,11 +36,11 @@ GarmentPositions positions_of(const Session& session) {
 /// Signed distance of a particle from all that its garment collides with, m.
 double distance_to_colliders(const Session& session, int g, const Vec3& p) {
   double nearest = std::numeric_limits<double>::infinity();
-  const proxies::SweptColliders colliders = session.colliders().swept();
+  const proxies::SweptColliders colliders = session.colliders_of(g);
   if (session.collides_with_body()) nearest = session.contact_with_body(g, p).distance;
   else
-    for (const proxies::Capsule& capsule : colliders.end)
-      nearest = std::min(nearest, proxies::signed_distance(p, capsule).distance);
+    for (int c = 0; c < colliders.size(); ++c)
+      if (colliders.meets(c)) nearest = std::min(nearest, proxies::signed_distance(p, colliders.end[c]).distance);
   if (colliders.ground) nearest = std::min(nearest, proxies::signed_distance(p, *colliders.ground).distance);
   return nearest;
 }
@@ -72,13 +72,12 @@ public:
   }
 
   void after_frame(const Session& session) {
-    const proxies::SweptColliders colliders = session.colliders().swept();
     for (std::size_t g = 0; g < scene_->garments.size(); ++g) {
       const std::vector<Vec3>& positions = session.garment(static_cast<int>(g)).particles().positions;
       strains_.add(probes_[g].parts(), positions);
       if (session.collides_with_body()) continue;
       found_.clear();
-      probes_[g].measure(colliders.end, colliders.ground, positions, found_);
+      probes_[g].measure(session.colliders_of(static_cast<int>(g)), positions, found_);
       for (const double depth : found_.particle_depths) in_proxies_.add(depth);
       run_->surface_in_proxies = std::max(run_->surface_in_proxies, found_.surface);
     }

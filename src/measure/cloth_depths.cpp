@@ -123,6 +123,14 @@ void ClothProbe::measure(std::span<const proxies::Capsule> proxies, const std::o
   measure_triangles(surface, positions, measure_particles(surface, positions, result), result);
 }
 
+void ClothProbe::measure(const proxies::SweptColliders& colliders, std::span<const Vec3> positions,
+                         ClothDepths& result) const {
+  std::vector<proxies::Capsule> met;
+  for (int c = 0; c < colliders.size(); ++c)
+    if (colliders.meets(c)) met.push_back(colliders.end[c]);
+  measure(met, colliders.ground, positions, result);
+}
+
 /// Signed distances; where nobody needs to ask a bound that none is below.
 template <class Surface>
 std::vector<double> ClothProbe::measure_particles(const Surface& surface, std::span<const Vec3> positions,

@@ -4,6 +4,7 @@
 
 #include "cloth/metrics.h"
 #include "proxies/body/body_mesh.h"
+#include "proxies/motion/collider_set.h"
 
 #include <array>
 #include <optional>
@@ -57,6 +58,8 @@ public:
   /// The same, below the deepest of all proxies, the ground among them where there is one.
   void measure(std::span<const proxies::Capsule> proxies, const std::optional<proxies::Plane>& ground,
                std::span<const Vec3> positions, ClothDepths& result) const;
+  /// Of those that are met, as they are at the frame's end.
+  void measure(const proxies::SweptColliders& colliders, std::span<const Vec3> positions, ClothDepths& result) const;
 
   const cloth::MeasuredParts& parts() const { return parts_; }
 

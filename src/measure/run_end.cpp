@@ -78,7 +78,7 @@ RunEnd end_of(const Session& session, std::span<const ClothProbe> probes, const 
           place_among(cloth::middle_of(end.longest, positions), colliders.end, session.colliders().proxies());
       ClothDepths in_proxies, in_body;
       if (!session.collides_with_body()) {
-        probes[g].measure(colliders.end, colliders.ground, positions, in_proxies);
+        probes[g].measure(session.colliders_of(static_cast<int>(g)), positions, in_proxies);
         end.in_proxies = deepest_of(in_proxies);
       }
       if (body) {

@@ -30,14 +30,13 @@ void RunStats::add(const Session& session) {
   const FrameTimes& t = session.times();
   const double ms[] = {t.pose, t.proxies, t.broad, t.cloth, t.contact, t.skin, t.total()};
   for (std::size_t k = 0; k < stages_.size(); ++k) stages_[k].ms.add(ms[k]);
-  const proxies::SweptColliders colliders = session.colliders().swept();
   if (session.collides_with_body()) posed_body(session);
   double surface = 0.0;
   for (std::size_t g = 0; g < probes_.size(); ++g) {
     const std::vector<Vec3>& positions = session.garment(static_cast<int>(g)).particles().positions;
     depths_.clear();
     if (session.collides_with_body()) probes_[g].measure(*body_, positions, depths_);
-    else probes_[g].measure(colliders.end, colliders.ground, positions, depths_);
+    else probes_[g].measure(session.colliders_of(static_cast<int>(g)), positions, depths_);
     for (const double depth : depths_.particle_depths) particles_mm_.add(1000.0 * depth);
     inside_ += depths_.particles.inside;
     surface = std::max(surface, depths_.surface);

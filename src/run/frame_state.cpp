@@ -15,6 +15,7 @@ std::size_t FrameState::bytes() const {
   std::size_t sum = sizeof(*this) + bytes_of(joints) + bytes_of(colliders_start) + bytes_of(colliders_end) +
                     bytes_of(spin) + bytes_of(substeps);
   for (const cloth::Particles& garment : garments) sum += bytes_of(garment.positions) + bytes_of(garment.velocities);
+  for (const std::vector<std::uint8_t>& mask : ignored) sum += bytes_of(mask);
   for (const BroadPhaseState& phase : broad)
     sum += bytes_of(phase.boxes) + bytes_of(phase.begin) + bytes_of(phase.colliders);
   return sum;
@@ -33,10 +34,12 @@ void capture(const Session& session, FrameState& out) {
   out.garments.resize(garments);
   out.broad.resize(garments);
   out.substeps.resize(garments);
+  out.ignored.resize(garments);
   for (std::size_t g = 0; g < garments; ++g) {
     const cloth::GuardedSolver& solver = session.garment(static_cast<int>(g));
     out.garments[g] = solver.particles();
     out.substeps[g] = solver.substeps();
+    assign(out.ignored[g], session.colliders_of(static_cast<int>(g)).ignored);
     const cloth::BroadPhaseView phase = solver.broad_phase();
     assign(out.broad[g].boxes, phase.boxes);
     assign(out.broad[g].begin, phase.begin);

@@ -18,6 +18,7 @@ struct FrameState {
   std::vector<Transform> joints;
   std::vector<proxies::Capsule> colliders_start, colliders_end; ///< at both ends of the frame
   std::vector<Vec3> spin;
+  std::vector<std::vector<std::uint8_t>> ignored; ///< [garment][collider]: what it does not meet; empty: it meets all
   std::optional<proxies::Plane> ground;
   std::vector<cloth::Particles> garments;
   std::vector<BroadPhaseState> broad; ///< [garment]
@@ -26,6 +27,9 @@ struct FrameState {
   int recoveries = 0; ///< since the start
 
   proxies::SweptColliders swept() const { return {colliders_start, colliders_end, ground, spin}; }
+  proxies::SweptColliders swept(std::size_t garment) const {
+    return {colliders_start, colliders_end, ground, spin, {}, {}, ignored[garment]};
+  }
   std::size_t bytes() const; ///< that it takes
 };
 

@@ -2,6 +2,7 @@
 
 #include "cloth/state/tolerances.h"
 #include "src/base/stopwatch.h"
+#include "src/run/met_colliders.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,6 +64,7 @@ Runtime::Runtime(const Wearer& wearer)
     pins_start_.emplace_back(garment.pins.size());
     pins_end_.emplace_back(garment.pins.size());
     queries_.push_back(query_of(wearer));
+    ignored_.push_back(ignored_by(garment, colliders_.proxies(), wearer.character.skeleton));
     most = std::max(most, garment.particle_count());
   }
   carried_.reserve(most);
@@ -208,7 +210,7 @@ void Runtime::advance_garment(std::size_t g, double extra_drag) {
   cloth::GuardedSolver& solver = garments_[g];
   GarmentFrame& frame = garment_frames_[g];
   cloth::FrameInput input;
-  input.colliders = colliders_.swept(); // of the true body, too, they tell how many substeps are needed
+  input.colliders = colliders_of(static_cast<int>(g)); // of the true body, too, they tell how many substeps are needed
   input.friction = friction_;
   input.pins_start = pins_start_[g];
   input.pins_end = pins_end_[g];

@@ -122,6 +122,12 @@ public:
   const FrameTimes& times() const { return times_; }
   std::span<const Transform> world_from_joint() const { return world_; }
   const proxies::ColliderSet& colliders() const { return colliders_; }
+  /// Those that garment `g` meets; the others are ignored.
+  proxies::SweptColliders colliders_of(int g) const {
+    proxies::SweptColliders colliders = colliders_.swept();
+    colliders.ignored = ignored_[g];
+    return colliders;
+  }
   const cloth::GuardedSolver& garment(int g) const { return garments_[g]; }
   bool collides_with_body() const { return wearer_->collides_with_body(); }
   /// Signed distance of a point from what garment `g` collided with last, at the pose of the frame's end. Only where
@@ -169,6 +175,7 @@ private:
   std::vector<Transform> world_;
   GarmentPins pins_;
   proxies::ColliderSet colliders_;
+  std::vector<std::vector<std::uint8_t>> ignored_;                ///< [garment][collider] (met_colliders.h)
   std::vector<std::unique_ptr<proxies::CollisionQuery>> queries_; ///< [garment]: one serves one thread
   std::vector<cloth::GuardedSolver> garments_;
   std::vector<GarmentFrame> garment_frames_; ///< [garment], the last

@@ -1,6 +1,7 @@
 #include "src/run/wearer.h"
 
 #include "rig/error.h"
+#include "src/run/met_colliders.h"
 #include "src/run/worn_garment.h"
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 namespace tutu::app {
 
 void Wearer::put_on(const cloth::GarmentDescription& garment) {
+  check_met_colliders(garment.met, garment.file, proxies, character.skeleton);
   WornGarment worn = wear(garment, character);
   garments.push_back(std::move(worn.garment));
   attachment_joints.push_back(std::move(worn.joints));

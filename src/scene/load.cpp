@@ -179,6 +179,9 @@ LoadedScene load_scene(const SceneDescription& description) {
                      "\"air\" in the fabric of one, or no wind");
   scene.wind = description.wind;
   apply_settings(description, scene);
+  for (const cloth::Garment& garment : scene.garments)
+    if (scene.collides_with_body() && !garment.met.names.empty())
+      scene.notes.push_back(garment.name + ": meets all of the true body, whatever proxies it ignores");
   return scene;
 }
 

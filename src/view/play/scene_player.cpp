@@ -114,7 +114,7 @@ std::vector<Figures> ScenePlayer::figures() {
   for (std::size_t g = 0; g < shown_->garments.size(); ++g) {
     const cloth::Garment& garment = scene_->garments[g];
     touches_.clear();
-    find_touches(garment, shown_->garments[g].positions, shown_->swept(), touches_);
+    find_touches(garment, shown_->garments[g].positions, shown_->swept(g), touches_);
     figures.particles += garment.particle_count();
     figures.contacts += static_cast<int>(touches_.size());
     figures.substeps = std::max(figures.substeps, shown_->substeps[g]);

@@ -3,6 +3,8 @@
 #include "proxies/motion/collider_motion.h"
 #include "src/view/show/overlay_colours.h"
 
+#include <algorithm>
+
 namespace tutu::app {
 namespace {
 
@@ -30,9 +32,13 @@ void add_joint_frames(std::span<const Transform> joints, std::vector<LineView>& 
     }
 }
 
-void add_proxies(std::span<const proxies::Capsule> colliders, std::vector<CapsuleView>& capsules) {
-  for (const proxies::Capsule& collider : colliders)
-    capsules.push_back(drawn(collider, collider.a == collider.b ? k_sky : k_orange));
+void add_proxies(const FrameState& state, std::vector<CapsuleView>& capsules) {
+  for (std::size_t c = 0; c < state.colliders_end.size(); ++c) {
+    const proxies::Capsule& collider = state.colliders_end[c];
+    const bool is_ignored = std::ranges::any_of(
+        state.ignored, [&](const std::vector<std::uint8_t>& mask) { return !mask.empty() && mask[c] != 0; });
+    capsules.push_back(drawn(collider, is_ignored ? k_grey : collider.a == collider.b ? k_sky : k_orange));
+  }
 }
 
 void add_box(const proxies::Box& box, const Colour& colour, float width, std::vector<LineView>& lines) {

@@ -3,6 +3,7 @@
 
 #include "proxies/motion/collider_set.h"
 #include "rig/skeleton.h"
+#include "src/run/frame_state.h"
 #include "src/view/render/frame_view.h"
 
 #include <span>
@@ -17,8 +18,8 @@ void add_skeleton(const rig::Skeleton& skeleton, std::span<const Transform> join
 inline constexpr float k_joint_axis = 0.05f; // m
 void add_joint_frames(std::span<const Transform> joints, std::vector<LineView>& lines);
 
-/// The colliders at the frame's end: balls sky blue, all others orange.
-void add_proxies(std::span<const proxies::Capsule> colliders, std::vector<CapsuleView>& capsules);
+/// The colliders at the frame's end: balls sky blue, all others orange, what a garment ignores grey.
+void add_proxies(const FrameState& state, std::vector<CapsuleView>& capsules);
 
 /// Twelve edges a box.
 void add_box(const proxies::Box& box, const Colour& colour, float width, std::vector<LineView>& lines);

@@ -16,7 +16,8 @@ void find_touches(const cloth::Garment& garment, std::span<const Vec3> positions
     const auto note = [&](int collider, const proxies::Contact& contact) {
       if (contact.distance < reach) touches.push_back({static_cast<int>(i), collider, contact});
     };
-    for (int c = 0; c < all.size(); ++c) note(c, proxies::signed_distance(positions[i], all.end[c]));
+    for (int c = 0; c < all.size(); ++c)
+      if (all.meets(c)) note(c, proxies::signed_distance(positions[i], all.end[c]));
     if (all.ground) note(all.ground_index(), proxies::signed_distance(positions[i], *all.ground));
   }
 }

@@ -157,11 +157,11 @@ FrameView SceneView::frame(const FrameState& state, const SkinView& skin, const 
     if (layers.tiles) add_broad_phase(state.broad[g], particles, colliders, view.lines);
     if (layers.contacts) {
       touches_.clear();
-      find_touches(garment, particles, colliders, touches_);
+      find_touches(garment, particles, state.swept(g), touches_);
       add_touches(touches_, garment.fabric.contact_offset(), view.lines);
     }
   }
-  if (layers.proxies) add_proxies(colliders.end, view.capsules);
+  if (layers.proxies) add_proxies(state, view.capsules);
   if (layers.boxes) add_swept_boxes(colliders, view.lines);
   if (layers.sweeps) add_sweeps(colliders, view.capsules, view.lines);
   if (layers.skeleton) add_skeleton(scene_->character.skeleton, state.joints, view.lines);

@@ -48,10 +48,10 @@ Why explain(const Scene& scene, std::size_t garment, int particle, const FrameSt
   why.pinned = cloth::pinned_flags(cloth)[particle] != 0;
 
   const double gap = cloth.fabric.contact_offset(), h = 1.0 / scene.settings.frames_per_second;
-  const proxies::SweptColliders all = now.swept();
+  const proxies::SweptColliders all = now.swept(garment);
   const std::vector<std::string> names = collider_names(scene);
   for (int c = 0; c <= all.ground_index(); ++c) {
-    if (c == all.ground_index() && !all.ground) continue;
+    if (!all.meets(c) || (c == all.ground_index() && !all.ground)) continue;
     const proxies::Contact contact = contact_with(all, c, why.position);
     WhyContact entry;
     entry.collider = names[c];
@@ -90,11 +90,11 @@ Why explain(const Scene& scene, std::size_t garment, int particle, const FrameSt
 std::optional<FirstWrong> wrong_in(const Scene& scene, std::size_t garment, int particle, const FrameState& now) {
   const cloth::Garment& cloth = scene.garments[garment];
   const std::vector<Vec3>& positions = now.garments[garment].positions;
-  const proxies::SweptColliders all = now.swept();
+  const proxies::SweptColliders all = now.swept(garment);
   double deepest = k_inside_depth;
   std::optional<int> in;
   for (int c = 0; c <= all.ground_index(); ++c) {
-    if (c == all.ground_index() && !all.ground) continue;
+    if (!all.meets(c) || (c == all.ground_index() && !all.ground)) continue;
     const double depth = -contact_with(all, c, positions[particle]).distance;
     if (depth <= deepest) continue;
     deepest = depth;
@@ -183,8 +183,9 @@ WhyProxy explain_proxy(const Scene& scene, int collider, const FrameState& now) 
   std::vector<Touch> touches;
   for (std::size_t g = 0; g < scene.garments.size(); ++g) {
     const cloth::Garment& garment = scene.garments[g];
+    if (!now.swept(g).meets(collider)) why.ignored_by.push_back(garment.name);
     touches.clear();
-    find_touches(garment, now.garments[g].positions, now.swept(), touches);
+    find_touches(garment, now.garments[g].positions, now.swept(g), touches);
     for (const Touch& touch : touches) {
       if (touch.collider != collider) continue;
       ++why.touching;
@@ -199,11 +200,8 @@ WhyProxy explain_proxy(const Scene& scene, int collider, const FrameState& now) 
 }
 
 nlohmann::json json_of(const WhyProxy& why) {
-  nlohmann::json json = {{"name", why.name},
-                         {"frame", why.frame},
-                         {"speed_m_s", why.speed},
-                         {"touching", why.touching},
-                         {"deepest", nullptr}};
+  nlohmann::json json = {{"name", why.name},         {"frame", why.frame},           {"speed_m_s", why.speed},
+                         {"touching", why.touching}, {"ignored_by", why.ignored_by}, {"deepest", nullptr}};
   if (why.particle >= 0)
     json["deepest"] = {{"garment", why.garment}, {"particle", why.particle}, {"depth_mm", 1000.0 * why.depth}};
   return json;
@@ -215,6 +213,7 @@ std::vector<std::string> text_of(const WhyProxy& why) {
   if (why.particle >= 0)
     lines.push_back(
         fmt::format("deepest: {} {}, {:.2f} mm into the gap", why.garment, why.particle, 1000.0 * why.depth));
+  for (const std::string& garment : why.ignored_by) lines.push_back("not met by " + garment);
   return lines;
 }
 

@@ -64,11 +64,12 @@ std::vector<std::string> text_of(const Why& why);
 struct WhyProxy {
   std::string name;
   int frame = 0;
-  double speed = 0.0;  ///< m/s, of the end of its axis that goes farther in the frame
-  int touching = 0;    ///< particles of all garments (find_touches)
-  std::string garment; ///< of the particle that is deepest in the garment's gap; "" when none is
-  int particle = -1;   ///< that one
-  double depth = 0.0;  ///< m, > 0 where there is one
+  double speed = 0.0;                  ///< m/s, of the end of its axis that goes farther in the frame
+  int touching = 0;                    ///< particles of all garments (find_touches)
+  std::string garment;                 ///< of the particle that is deepest in the garment's gap; "" when none is
+  int particle = -1;                   ///< that one
+  double depth = 0.0;                  ///< m, > 0 where there is one
+  std::vector<std::string> ignored_by; ///< garments
 };
 WhyProxy explain_proxy(const Scene& scene, int collider, const FrameState& now);
 nlohmann::json json_of(const WhyProxy& why);
