@@ -10,7 +10,7 @@ namespace tutu::cloth {
 
 MassSpring::MassSpring(const Garment& garment, const SolverOptions& options)
     : garment_(&garment), vibration_(fastest_vibration(garment)), pinned_(pinned_flags(garment)),
-      contacts_(garment.fabric.contact_offset(), options.swept), triangle_contacts_(garment, options) {
+      contacts_(garment, options.swept), triangle_contacts_(garment, options) {
   reset(garment.rest_positions);
 }
 
@@ -23,6 +23,7 @@ void MassSpring::reset(std::span<const Vec3> positions) {
 
 void MassSpring::restore(const Particles& state) {
   particles_ = state;
+  contacts_.forget();
   renew_forces();
 }
 
@@ -54,12 +55,21 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
   times_ = {};
   if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
-  contacts_.begin_frame(query, input.colliders, particles_, input.seconds, input.contacts);
+  FrameInput frictionless = input;
+  frictionless.friction = {};
+  contacts_.begin_frame(query, frictionless, particles_);
   triangle_contacts_.begin_frame(query, contacts_, particles_);
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto stop_at_surface = [this](int i, int, const proxies::Contact& contact, double push) {
-    const Response response{push * contact.normal, -particles_.velocities[i].dot(contact.normal) * contact.normal};
+    const Response response{contacts_.fitted(i, push * contact.normal, particles_.positions),
+                            -particles_.velocities[i].dot(contact.normal) * contact.normal};
+    particles_.positions[i] += response.moved;
+    particles_.velocities[i] += response.velocity;
+    return response;
+  };
+  const auto settle = [&](int i, const BetweenColliders::Settled& settled) {
+    const Response response{settled.way, (settled.way - settled.start) / h};
     particles_.positions[i] += response.moved;
     particles_.velocities[i] += response.velocity;
     return response;
@@ -83,7 +93,7 @@ std::optional<Unfinished> MassSpring::step(const FrameInput& input, proxies::Col
       for (std::size_t i = 0; i < starts.size(); ++i) starts[i] -= h * particles_.velocities[i];
       return find_trouble({*garment_, pinned_, substep, h, particles_, starts}, {});
     }
-    contacts_.for_each_contact(query, s, pinned_, particles_, stop_at_surface);
+    contacts_.for_each_contact(query, s, pinned_, particles_, stop_at_surface, settle);
     triangle_contacts_.for_each_contact(query, contacts_, particles_, stop_triangle);
     time = lap(time, times_.contact);
     close_seams(*garment_, pinned_, particles_);

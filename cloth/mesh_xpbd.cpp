@@ -21,8 +21,8 @@ constexpr double k_most_damped = 1.25;
 template <class Scalar>
 MeshXpbd<Scalar>::MeshXpbd(const Garment& garment, const SolverOptions& options)
     : garment_(&garment), pinned_(pinned_flags(garment)), x_(garment.rest_positions.size()),
-      was_(garment.rest_positions.size()), predicted_(garment.rest_positions.size()),
-      contacts_(garment.fabric.contact_offset(), options.swept), triangle_contacts_(garment, options) {
+      was_(garment.rest_positions.size()), predicted_(garment.rest_positions.size()), contacts_(garment, options.swept),
+      triangle_contacts_(garment, options) {
   for (int i = 0; i < garment.particle_count(); ++i)
     inverse_masses_.push_back(pinned_[i] ? Scalar(0) : static_cast<Scalar>(1.0 / garment.masses[i]));
   add_stretches();
@@ -69,6 +69,7 @@ template <class Scalar> void MeshXpbd<Scalar>::reset(std::span<const Vec3> posit
 template <class Scalar> void MeshXpbd<Scalar>::restore(const Particles& state) {
   particles_ = state;
   before_ = state.positions;
+  contacts_.forget();
 }
 
 template <class Scalar> void MeshXpbd<Scalar>::predict(const FrameInput& input, double s, double h) {
@@ -207,16 +208,23 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
   times_ = {};
   if (const auto unusable = find_unusable(*garment_, pinned_, particles_)) return *unusable;
   auto time = Clock::now();
-  contacts_.begin_frame(query, input.colliders, particles_, input.seconds, input.contacts);
+  contacts_.begin_frame(query, input, particles_);
   triangle_contacts_.begin_frame(query, contacts_, particles_);
   time = lap(time, times_.broad);
   const double h = input.seconds / input.substeps;
   const auto rub = [&](int i, int collider, const proxies::Contact& contact, double push) {
-    const Vec3 moved = contacts_.push_out(particles_.positions[i], before_[i], collider, contact, push, input.friction);
+    std::vector<Vec3>& x = particles_.positions;
+    const Vec3 moved = contacts_.fitted(i, contacts_.way_out(x[i], before_[i], collider, contact, push), x);
+    x[i] += moved;
     return Response{moved, moved / h};
   };
+  const auto settle = [&](int i, const BetweenColliders::Settled& settled) {
+    particles_.positions[i] += settled.way;
+    before_[i] += settled.start;
+    return Response{settled.way, (settled.way - settled.start) / h};
+  };
   const auto rub_triangle = [&](const ClothContact& contact) {
-    const Vec3 moved = push_out(contact, contacts_, before_, input.friction, particles_.positions);
+    const Vec3 moved = push_out(contact, contacts_, before_, particles_.positions);
     return Response{moved, moved / h};
   };
   for (int substep = 0; substep < input.substeps; ++substep) {
@@ -229,7 +237,7 @@ std::optional<Unfinished> MeshXpbd<Scalar>::step(const FrameInput& input, proxie
     close_seams(*garment_, pinned_, particles_);
     time = lap(time, times_.cloth);
     if (!is_in_world(particles_)) return find_trouble(now, {});
-    contacts_.for_each_contact(query, s, pinned_, particles_, rub);
+    contacts_.for_each_contact(query, s, pinned_, particles_, rub, settle);
     triangle_contacts_.for_each_contact(query, contacts_, particles_, rub_triangle);
     time = lap(time, times_.contact);
     for (int i = 0; i < particles_.count(); ++i) {

@@ -22,7 +22,7 @@ public:
   Xpbd(const Garment& garment, const SolverOptions& options)
       : garment_(&garment), kernel_(woven_kernel<T>()), sheet_(garment, options.passes > 1), passes_(options.passes),
         pinned_(pinned_flags(garment)), damping_(garment), seams_(garment), contacts_(garment, options, sheet_),
-        search_(garment.fabric.contact_offset(), options.swept), triangle_search_(garment, options) {
+        search_(garment, options.swept), triangle_search_(garment, options) {
     if (options.self_collision) {
       self_ = std::make_unique<SelfCollision>(garment);
       start_.resize(garment.rest_positions.size());
@@ -43,6 +43,7 @@ public:
     pins_.clear();
     sheet_.set(particles_.positions, particles_.velocities);
     contacts_.forget();
+    search_.forget();
     if (self_) self_->forget();
     unusable_ = find_unusable(*garment_, pinned_, particles_);
   }
@@ -69,7 +70,7 @@ private:
   void follow_pins(const FrameInput& input, double s, double h);
   void slow_down(const FrameInput& input, double s, double h);
   bool part_layers(double h);
-  void ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s, double h);
+  void ask_each(proxies::CollisionQuery& query, double s, double h);
   /// A substep: its number, its end in (0, 1] of the frame, and what the kernel is told of it.
   struct Substep {
     int number = 0;
@@ -126,17 +127,27 @@ template <class T> bool Xpbd<T>::part_layers(double h) {
 
 /// Each particle by way of the query, and what lies between them, in double: the plain form of contact, for the
 /// backends that have no other.
-template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, const FrameInput& input, double s, double h) {
+template <class T> void Xpbd<T>::ask_each(proxies::CollisionQuery& query, double s, double h) {
   sheet_.get_positions(particles_.positions);
   search_.for_each_contact(
-      query, s, pinned_, particles_, [&](int i, int collider, const proxies::Contact& contact, double push) {
-        Vec3& x = particles_.positions[i];
-        const Vec3 moved = search_.push_out(x, sheet_.start_position(i), collider, contact, push, input.friction);
-        sheet_.move_to(i, x);
+      query, s, pinned_, particles_,
+      [&](int i, int collider, const proxies::Contact& contact, double push) {
+        std::vector<Vec3>& x = particles_.positions;
+        const Vec3 out = search_.way_out(x[i], sheet_.start_position(i), collider, contact, push);
+        const Vec3 moved = search_.fitted(i, out, x);
+        x[i] += moved;
+        sheet_.move_to(i, x[i]);
         return Response{moved, moved / h};
+      },
+      [&](int i, const BetweenColliders::Settled& settled) {
+        Vec3& x = particles_.positions[i];
+        x += settled.way;
+        sheet_.move_to(i, x);
+        sheet_.move_start_to(i, sheet_.start_position(i) + settled.start);
+        return Response{settled.way, (settled.way - settled.start) / h};
       });
   triangle_search_.for_each_contact(query, search_, particles_, [&](const ClothContact& contact) {
-    const Vec3 moved = push_out(contact, search_, search_.way().starts, input.friction, particles_.positions);
+    const Vec3 moved = push_out(contact, search_, search_.way().starts, particles_.positions);
     for (const int i : contact.particles) sheet_.move_to(i, particles_.positions[i]);
     return Response{moved, moved / h};
   });
@@ -195,7 +206,7 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
   asks_each_ = !query.leaves_contacts();
   sheet_.follow();
   if (asks_each_) {
-    search_.begin_frame(query, input.colliders, particles(), input.seconds, input.contacts);
+    search_.begin_frame(query, input, particles());
     triangle_search_.begin_frame(query, search_, particles());
   } else {
     contacts_.begin_frame(query, input, sheet_);
@@ -230,7 +241,7 @@ template <class T> std::optional<Unfinished> Xpbd<T>::step(const FrameInput& inp
     if (asks_each_) {
       sheet_.get_positions(particles_.positions);
       if (!is_in_world(particles_)) return diverged(input, at);
-      ask_each(query, input, s, h);
+      ask_each(query, s, h);
     } else if (!contacts_.resolve(query, kernel_, sheet_, s, h)) {
       return diverged(input, at);
     }

@@ -63,7 +63,6 @@ public:
   double need(int particle, double offset, double distance) const;
   int held_by(int particle) const { return anchors_[particle]; } ///< -1: by none
 
-private:
   struct Thread {
     int other;
     double length; ///< m
@@ -71,6 +70,8 @@ private:
   std::span<const Thread> threads_of(int particle) const {
     return std::span(threads_).subspan(begin_[particle], begin_[particle + 1] - begin_[particle]);
   }
+
+private:
   std::vector<int> begin_; ///< of each particle in threads_
   std::vector<Thread> threads_;
   std::vector<int> anchors_;

@@ -8,10 +8,13 @@
 
 namespace tutu::cloth {
 
-void ContactSearch::begin_frame(proxies::CollisionQuery& query, const proxies::SweptColliders& colliders,
-                                const Particles& particles, double seconds, ContactSet* kept) {
+void ContactSearch::begin_frame(proxies::CollisionQuery& query, const FrameInput& input, const Particles& particles) {
+  const proxies::SweptColliders& colliders = input.colliders;
+  const double seconds = input.seconds;
+  if (garment_ && !pinched_) pinched_.emplace(*garment_);
   colliders_ = colliders;
-  kept_ = kept;
+  friction_ = input.friction;
+  kept_ = input.contacts;
   if (kept_) kept_->begin_step();
   double fastest = 0.0; // squared m/s
   for (const Vec3& v : particles.velocities) fastest = std::max(fastest, v.squaredNorm());
@@ -128,13 +131,55 @@ void ContactSearch::account_travel(proxies::CollisionQuery& query, const Particl
   }
 }
 
-Vec3 ContactSearch::push_out(Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact, double push,
-                             std::span<const double> friction) const {
-  const Vec3 from = x;
-  x += push * contact.normal;
-  if (!friction.empty())
-    x = rubbed(x, x - start - surface_motion(collider, x), contact.normal, friction[collider] * push);
-  return x - from;
+Vec3 ContactSearch::way_out(const Vec3& x, const Vec3& start, int collider, const proxies::Contact& contact,
+                            double push) const {
+  const Vec3 out = x + push * contact.normal;
+  if (friction_.empty()) return out - x;
+  return rubbed(out, out - start - surface_motion(collider, out), contact.normal, friction_[collider] * push) - x;
+}
+
+double ContactSearch::need(const proxies::CollisionQuery& query, int particle, int collider,
+                           std::span<const Vec3> x) const {
+  const int held = pinched_->between().held_by(particle);
+  return held < 0 || collider == colliders_.body_index()
+             ? offset_
+             : pinched_->between().need(particle, offset_, ask(query, x[held], collider).distance);
+}
+
+bool ContactSearch::find_near(const proxies::CollisionQuery& query, int i, std::span<const Vec3> x) {
+  near_.clear();
+  double deepest = 0.0;
+  bool is_limited = false;
+  for (int pair = candidates_.begin[i]; pair < candidates_.begin[i + 1]; ++pair) {
+    const int collider = candidates_.colliders[pair];
+    const double travelled = particle_travel_[i] + collider_travel_[collider];
+    if (travelled < wake_[pair]) continue;
+    NearCollider near;
+    near.collider = collider;
+    near.contact = ask(query, x[i], collider);
+    near.need = need(query, i, collider, x);
+    near.moved = substep_way(collider);
+    near.surface = surface_motion(collider, near.contact.closest);
+    if (!friction_.empty()) near.friction = friction_[collider];
+    ++counts_.queries;
+    if (near.contact.distance >= offset_) wake_[pair] = travelled + (near.contact.distance - offset_) - k_travel_slack;
+    deepest = std::max(deepest, near.lacks());
+    is_limited = is_limited || (near.need < offset_ && near.lacks() > 0.0);
+    near_.push_back(near);
+  }
+  std::erase_if(near_, [&](const NearCollider& near) { return near.lacks() <= -deepest; });
+  return is_limited || opposed(near_);
+}
+
+void ContactSearch::keep_settled(int particle, const NearCollider& by, const Response& response) const {
+  ClothContact kept;
+  kept.particles[0] = particle;
+  kept.weights[0] = kept.levers[0] = 1.0;
+  kept.collider = by.collider;
+  kept.contact = by.contact;
+  kept.push = response.moved.dot(by.contact.normal);
+  kept.cause = ContactCause::pinch;
+  keep(kept, response);
 }
 
 Vec3 ContactSearch::surface_motion(int collider, const Vec3& point) const {

@@ -27,9 +27,9 @@ struct SweptContact {
   double time = 0.0; ///< of the touch, in [0, 1] of the substep
 };
 
-/// Nothing for what did not touch, for what began the substep inside the collider itself (it is worked out slowly), and for what the
-/// contact at the end will bring out the way it came in. Of a triangle whose contact is where the axis crosses it, no
-/// side is known to be the right one: nothing either.
+/// Nothing for what did not touch, for what began the substep inside the collider itself (it is worked out slowly), and
+/// for what the contact at the end will bring out the way it came in. Of a triangle whose contact is where the axis
+/// crosses it, no side is known to be the right one: nothing either.
 std::optional<SweptContact> swept_contact(const Vec3& from, const Vec3& to, const SweptCollider& collider);
 std::optional<SweptContact> swept_contact(const std::array<Vec3, 3>& from, const std::array<Vec3, 3>& to,
                                           const SweptCollider& collider);

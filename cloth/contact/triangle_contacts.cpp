@@ -9,10 +9,9 @@
 namespace tutu::cloth {
 
 Vec3 push_out(const ClothContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
-              std::span<const double> friction, std::vector<Vec3>& x) {
-  Vec3 to = contact.point(x);
+              std::vector<Vec3>& x) {
   const Vec3 way =
-      search.push_out(to, contact.point(starts), contact.collider, contact.contact, contact.push, friction);
+      search.way_out(contact.point(x), contact.point(starts), contact.collider, contact.contact, contact.push);
   contact.move(x, way);
   return way;
 }

@@ -14,9 +14,9 @@
 namespace tutu::cloth {
 
 /// Takes the point, which began the substep where `starts` says, out along the normal, and back by what rubs, as
-/// ContactSearch::push_out() does a particle. Returns the way.
+/// ContactSearch::way_out() has it of a particle. Returns the way.
 Vec3 push_out(const ClothContact& contact, const ContactSearch& search, std::span<const Vec3> starts,
-              std::span<const double> friction, std::vector<Vec3>& x);
+              std::vector<Vec3>& x);
 
 /// The triangles of one garment against the proxies of a scene, or its true body, after its particles have met them
 /// (ContactSearch, which it goes along with). Each triangle and proxy have one contact a substep, at the point that is
@@ -109,6 +109,8 @@ void TriangleContacts::for_each_contact(proxies::CollisionQuery& query, ContactS
   const bool asks_body = features_ == ContactFeatures::triangles && search.colliders().has_body();
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const Triangle& triangle = triangles_[t];
+    // What pushed it would undo how its corners were settled.
+    if (std::ranges::any_of(triangle, [&](int corner) { return search.is_pinched(corner); })) continue;
     double gone = travelled(triangle, way);
     double longest = -1.0; // edge, squared: of the triangle as it is, where somebody asks
     const auto meet_if = [&](const std::optional<ClothContact>& contact) {

@@ -73,6 +73,10 @@ inline constexpr double k_longest_edge = 2.0;
 /// (cloth/contact/between_colliders.h).
 inline constexpr double k_pinched_thread = 1.1;
 
+/// m. Where cloth is that much deeper in a collider than this came in the substep, it is looked at whether it is
+/// pinched; in the dance it never is.
+inline constexpr double k_left_deep = 0.003;
+
 /// Of the way along the cloth: how far from a held particle within a collider cloth can reach out of it. Less than 1,
 /// since threads that are straight already pull.
 inline constexpr double k_pinched_reach = 0.8;

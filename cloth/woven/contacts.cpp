@@ -13,10 +13,6 @@
 namespace tutu::cloth {
 namespace {
 
-/// m. Where cloth is that much deeper in a collider than this came in the substep, it is looked at whether it is
-/// pinched; in the dance it never is.
-constexpr double k_left_deep = 0.003;
-
 // Tile::pinched: substeps that a tile is settled particle by particle after it was pinched, those that one beside it
 // is, and when it is looked at whether it has to be.
 constexpr int k_pinched_for = 16, k_beside_pinched = 9, k_suspect = 1;

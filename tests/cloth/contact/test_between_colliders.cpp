@@ -4,6 +4,7 @@
 #include "cloth/state/tolerances.h"
 #include "proxies/distance/signed_distance.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <random>
 
@@ -16,6 +17,13 @@ Garment sheet(int n, double size = 0.4) {
   description.shape = GridShape{n, n, {-0.5 * size, 1.0, 0.0}, {size, 0, 0}, {0, -size, 0}};
   description.attachments = {{.joint = "stage", .last_row = 0}};
   return build_garment(description);
+}
+
+/// The same as a mesh, whose threads are its edges.
+Garment mesh_sheet(int n) {
+  Garment mesh = sheet(n);
+  mesh.rows = mesh.columns = 0;
+  return mesh;
 }
 
 /// A flat surface at `distance` from a particle that is to keep `need`, m, and how far it has moved.
@@ -112,10 +120,17 @@ struct Pressed {
   double off_middle = 0.0, longer = 0.0;
   int between = 0;
 };
-Pressed press(int n, int substeps, double overlap) {
-  const Garment garment = sheet(n);
-  const auto solver = make_solver(garment, {});
-  const auto query = proxies::make_query(proxies::Backend::hybrid);
+struct Asked {
+  bool is_mesh = false;
+  proxies::Backend backend = proxies::Backend::hybrid;
+  SolverKind solver = SolverKind::xpbd;
+};
+Pressed press(int n, int substeps, double overlap, const Asked& asked = {}) {
+  const Garment garment = asked.is_mesh ? mesh_sheet(n) : sheet(n);
+  SolverOptions options;
+  options.solver = asked.solver;
+  const auto solver = make_solver(garment, options);
+  const auto query = proxies::make_query(asked.backend);
   std::vector<Vec3> pins;
   for (const Pin& pin : garment.pins) pins.push_back(garment.rest_positions[pin.particle]);
   FrameInput input;
@@ -149,6 +164,27 @@ Pressed press(int n, int substeps, double overlap) {
     result.longer = std::max(result.longer, (x[s.i] - x[s.j]).norm() / s.rest_length - 1.0);
   }
   return result;
+}
+
+// Particles that are asked for themselves, in plain double: meshes, the other backends, mass_spring.
+TEST(BetweenColliders, ASheetOfAnyKindLiesInTheMiddle_slow) {
+  using proxies::Backend;
+  for (const Asked& asked : {Asked{true},
+                             {true, Backend::fcl},
+                             {false, Backend::fcl},
+                             {false, Backend::brute},
+                             {false, Backend::hybrid, SolverKind::mass_spring},
+                             {true, Backend::hybrid, SolverKind::mass_spring}})
+    for (const int n : {15, 30})
+      for (const int substeps : {12, 24, 48}) {
+        if (asked.solver == SolverKind::mass_spring && substeps != 48) continue;
+        const Pressed pressed = press(n, asked.solver == SolverKind::mass_spring ? 400 : substeps, 0.03, asked);
+        SCOPED_TRACE(fmt::format("{}, backend {}, solver {}, {} a side, {} substeps", asked.is_mesh ? "mesh" : "grid",
+                                 static_cast<int>(asked.backend), static_cast<int>(asked.solver), n, substeps));
+        EXPECT_GT(pressed.between, 0);
+        EXPECT_LE(pressed.off_middle, 1e-3);
+        EXPECT_LE(pressed.longer, 0.2);
+      }
 }
 
 TEST(BetweenColliders, ASheetBetweenClosingLimbsLiesInTheMiddle) {

@@ -29,12 +29,23 @@ void respond_plainly(std::span<const proxies::Capsule> before, std::span<const p
 /// The report's response: on the surface, without normal velocity.
 void respond(ContactSearch& search, proxies::CollisionQuery& query, double s, std::span<const std::uint8_t> pinned,
              Particles& particles) {
-  search.for_each_contact(query, s, pinned, particles, [&](int i, int, const proxies::Contact& contact, double push) {
-    particles.positions[i] += push * contact.normal;
-    Vec3& v = particles.velocities[i];
-    v -= v.dot(contact.normal) * contact.normal;
-    return Response{};
-  });
+  search.for_each_contact(
+      query, s, pinned, particles,
+      [&](int i, int, const proxies::Contact& contact, double push) {
+        particles.positions[i] += push * contact.normal;
+        Vec3& v = particles.velocities[i];
+        v -= v.dot(contact.normal) * contact.normal;
+        return Response{};
+      },
+      [](int, const BetweenColliders::Settled&) { return Response{}; });
+}
+
+void begin_frame(ContactSearch& search, proxies::CollisionQuery& query, const proxies::SweptColliders& colliders,
+                 const Particles& particles, double seconds) {
+  FrameInput input;
+  input.colliders = colliders;
+  input.seconds = seconds;
+  search.begin_frame(query, input, particles);
 }
 
 proxies::Capsule random_capsule(std::mt19937_64& random) {
@@ -69,7 +80,7 @@ TEST(ContactSearch, IsThePlainSearchToTheBit) {
       const std::vector<std::uint8_t> pinned(300, 0);
       const proxies::SweptColliders colliders{start, end, std::nullopt};
       ContactSearch search(offset);
-      search.begin_frame(*query, colliders, fast, seconds);
+      begin_frame(search, *query, colliders, fast, seconds);
       std::vector<proxies::Capsule> before = start;
       for (int k = 0; k < substeps; ++k) {
         const double s = (k + 1.0) / substeps, h = (s - static_cast<double>(k) / substeps) * seconds;
@@ -105,7 +116,7 @@ TEST(ContactSearch, ProjectsOntoSphereAndRoundedCylinder) {
   particles.velocities.assign(6, Vec3(-1, -2, 0.5));
   const std::vector<std::uint8_t> pinned = {0, 0, 0, 0, 0, 0};
   ContactSearch search(0.0);
-  search.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0); // time enough to come out
+  begin_frame(search, *query, {colliders, colliders, std::nullopt}, particles, 1.0); // time enough to come out
   respond(search, *query, 1.0, pinned, particles);
   EXPECT_LT((particles.positions[0] - Vec3(0.1, 0, 0)).norm(), 1e-14);
   EXPECT_LT((particles.velocities[0] - Vec3(0, -2, 0.5)).norm(), 1e-14);
@@ -125,7 +136,7 @@ TEST(ContactSearch, PinnedParticlesAreLeftAlone) {
   particles.positions = {{0.05, 0, 0}};
   particles.velocities = {{1, 2, 3}};
   ContactSearch search(0.0);
-  search.begin_frame(*query, {colliders, colliders, std::nullopt}, particles, 1.0 / 60);
+  begin_frame(search, *query, {colliders, colliders, std::nullopt}, particles, 1.0 / 60);
   respond(search, *query, 1.0, std::vector<std::uint8_t>{1}, particles);
   EXPECT_EQ(particles.positions[0], Vec3(0.05, 0, 0));
   EXPECT_EQ(particles.velocities[0], Vec3(1, 2, 3));
@@ -139,7 +150,7 @@ TEST(ContactSearch, ASpinningSurfaceMovesByItsShareOfTheFrame) {
   particles.positions = {{0, 0.1, 0}};
   particles.velocities = {Vec3::Zero()};
   ContactSearch search(0.0);
-  search.begin_frame(*query, {colliders, colliders, std::nullopt, spin}, particles, 1.0 / 60);
+  begin_frame(search, *query, {colliders, colliders, std::nullopt, spin}, particles, 1.0 / 60);
   for (const double s : {0.25, 1.0}) {
     respond(search, *query, s, std::vector<std::uint8_t>{0}, particles);
     const double part = s == 0.25 ? 0.25 : 0.75;
@@ -153,7 +164,7 @@ TEST(ContactSearch, TheGroundHoldsEvenWhatFallsFromFarAway) {
   particles.positions = {{0, 5, 0}};
   particles.velocities = {{0, -1, 0}};
   ContactSearch search(0.001);
-  search.begin_frame(*query, {{}, {}, proxies::Plane{Vec3::UnitY(), 0.0}}, particles, 1.0 / 60);
+  begin_frame(search, *query, {{}, {}, proxies::Plane{Vec3::UnitY(), 0.0}}, particles, 1.0 / 60);
   particles.positions[0].y() = -3.0; // much farther than its speed promised
   respond(search, *query, 1.0, std::vector<std::uint8_t>{0}, particles);
   EXPECT_NEAR(particles.positions[0].y(), 0.001, 1e-15);

@@ -133,10 +133,13 @@ TEST(TriangleContacts, AreThoseOfASearchOverAllPairs) {
       const proxies::SweptColliders colliders{start, end, std::nullopt};
       const auto query = proxies::make_query(backend);
       const std::vector<std::uint8_t> pinned = pinned_flags(garment);
-      ContactSearch search(fabric.contact_offset());
+      ContactSearch search(fabric.contact_offset()); // no threads: the twin knows no pinches
       TriangleContacts triangles(garment, with(ContactFeatures::triangles));
       Twin twin(garment);
-      search.begin_frame(*query, colliders, fast, k_seconds);
+      FrameInput input;
+      input.colliders = colliders;
+      input.seconds = k_seconds;
+      search.begin_frame(*query, input, fast);
       triangles.begin_frame(*query, search, fast);
       std::vector<proxies::Capsule> before = start, now(3);
       for (int k = 0; k < k_substeps; ++k) {
@@ -147,11 +150,15 @@ TEST(TriangleContacts, AreThoseOfASearchOverAllPairs) {
             if (!pinned[i]) particles->positions[i] += h * particles->velocities[i];
         const std::vector<Vec3> free = plain.positions;
         search.for_each_contact(
-            *query, s, pinned, fast, [&](int i, int collider, const proxies::Contact& contact, double push) {
-              return Response{search.push_out(fast.positions[i], starts[i], collider, contact, push, {})};
-            });
+            *query, s, pinned, fast,
+            [&](int i, int collider, const proxies::Contact& contact, double push) {
+              const Vec3 moved = search.way_out(fast.positions[i], starts[i], collider, contact, push);
+              fast.positions[i] += moved;
+              return Response{moved};
+            },
+            [](int, const BetweenColliders::Settled&) { return Response{}; });
         triangles.for_each_contact(*query, search, fast, [&](const ClothContact& contact) {
-          return Response{push_out(contact, search, starts, {}, fast.positions)};
+          return Response{push_out(contact, search, starts, fast.positions)};
         });
         proxies::colliders_at(colliders, s, now);
         twin.particles(before, now, twin_starts, h, plain.positions);
