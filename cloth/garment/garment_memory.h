@@ -13,7 +13,7 @@ std::uint64_t particles_of(const GarmentDescription& description);
 /// Bytes a particle, all told: rest shape with its springs, solver, contact, and what building them takes for a while.
 /// Measured as the peak of the process (tests/cloth/garment/test_garment_memory.cpp does it again).
 inline constexpr double k_bytes_a_woven_particle = 960.0; ///< of grids and tubes: 640 to 780, pinched ones 960
-inline constexpr double k_bytes_a_mesh_particle = 900.0;  ///< of discs and meshes: 740 to 830, 550 of mass_spring
+inline constexpr double k_bytes_a_mesh_particle = 1030.0; ///< of discs and meshes: 910 to 1020, 720 of mass_spring
 /// Bytes a tile of 128 woven particles keeps for each collider that may come near it; about so many a particle of a
 /// mesh that is near to it.
 inline constexpr double k_bytes_a_tile_and_collider = 40.0;
