@@ -3,6 +3,7 @@
 
 #include "cloth/contact/between_colliders.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 

@@ -390,8 +390,8 @@ bool all_constraints(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T
 }
 
 template <class T> bool constraints_to_break(const WovenSheetView<T>& sheet, const WovenStep<T>& step, T* room) {
-  const bool repeats = step.passes > 1;
-  const bool is_whole = repeats ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
+  const bool is_whole =
+      step.passes > 1 ? all_constraints<true>(sheet, step, room) : all_constraints<false>(sheet, step, room);
   if (has_short_lanes(sheet)) rest_short(sheet);
   return is_whole;
 }

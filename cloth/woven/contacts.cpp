@@ -39,7 +39,7 @@ WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& opt
   tiles_per_block_ = tiles_.size() / static_cast<std::size_t>(view.blocks);
   const Weave& weave = sheet.weave();
   struct Row {
-    double reach = 0.0, weft = 0.0, warp = 0.0, diagonal = 0.0;
+    double reach = 0.0, weft = 0.0, warp = 0.0;
   };
   std::vector<Row> rows(view.rows); // of the cells below each
   for (const Spring& spring : garment.springs) {
@@ -47,8 +47,8 @@ WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& opt
     // A cell lies within its longest diagonal of each corner, and cloth stretches.
     Row& row = rows[std::min(weave.row(spring.i), weave.row(spring.j))];
     row.reach = std::max(row.reach, k_cell_stretch * spring.rest_length);
-    const bool down = weave.row(spring.i) != weave.row(spring.j);
-    double& edge = spring.kind == SpringKind::shear ? row.diagonal : down ? row.warp : row.weft;
+    if (spring.kind == SpringKind::shear) continue;
+    double& edge = weave.row(spring.i) != weave.row(spring.j) ? row.warp : row.weft;
     edge = std::max(edge, spring.rest_length);
   }
   for (Tile& tile : tiles_)
@@ -56,7 +56,6 @@ WovenContacts<T>::WovenContacts(const Garment& garment, const SolverOptions& opt
       tile.reach = std::max(tile.reach, rows[k].reach);
       tile.weft = std::max(tile.weft, rows[k].weft);
       tile.warp = std::max(tile.warp, rows[k].warp);
-      tile.diagonal = std::max(tile.diagonal, rows[k].diagonal);
     }
   boxes_.resize(tiles_.size());
 }
@@ -99,6 +98,7 @@ template <class T> void WovenContacts<T>::find_pairs(proxies::CollisionQuery& qu
   pairs_.clear();
   for (std::size_t t = 0; t < tiles_.size(); ++t)
     for (int p = begin_[t]; p < begin_[t + 1]; ++p) pairs_.push_back(pair_of(tiles_[t], candidates_.colliders[p]));
+  any_wide_ = std::ranges::any_of(pairs_, [](const Pair& pair) { return pair.features.wide; });
   collider_travel_.assign(placed_.size() + 1, 0.0);
   ++counts_.searches;
   counts_.candidates += static_cast<std::int64_t>(pairs_.size());
@@ -171,7 +171,7 @@ bool WovenContacts<T>::resolve(proxies::CollisionQuery& query, const WovenKernel
   const int ground = static_cast<int>(placed_.size());
   const bool any_pinched = std::ranges::any_of(tiles_, [](const Tile& tile) { return tile.pinched > 0; });
   if (any_pinched) pinched_cloth_.begin(sheet);
-  std::ranges::fill(marks_, std::uint8_t{0});
+  if (any_wide_) std::ranges::fill(marks_, std::uint8_t{0});
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     Tile& tile = tiles_[t];
     if (tile.pinched < 0) ++tile.pinched;

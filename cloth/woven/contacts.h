@@ -53,14 +53,14 @@ public:
 private:
   struct Tile {
     WovenRows rows;
-    double weft = 0.0, warp = 0.0, diagonal = 0.0; ///< m, the longest of a cell's edges at rest
-    double reach = 0.0;                            ///< m: no point of a cell is farther from a corner
-    double margin = 0.0;                           ///< m its particles may go before colliders are looked for again
-    double travelled = 0.0;                        ///< m since then, of its fastest particle
-    double way = 0.0;                              ///< m in this substep, before contacts
-    double speed = 0.0;                            ///< m/s in the last one
-    bool touched = false;                          ///< in this substep
-    int pinched = 0;                               ///< substeps that it is still settled one by one (contacts.cpp)
+    double weft = 0.0, warp = 0.0; ///< m, the longest of a cell's edges at rest
+    double reach = 0.0;            ///< m: no point of a cell is farther from a corner
+    double margin = 0.0;           ///< m its particles may go before colliders are looked for again
+    double travelled = 0.0;        ///< m since then, of its fastest particle
+    double way = 0.0;              ///< m in this substep, before contacts
+    double speed = 0.0;            ///< m/s in the last one
+    bool touched = false;          ///< in this substep
+    int pinched = 0;               ///< substeps that it is still settled one by one (contacts.cpp)
   };
   struct Pair {
     int collider = 0;
@@ -108,6 +108,7 @@ private:
   /// Of each collider, block and row: whether a particle of it is within what may let its cells meet the collider, in
   /// this substep. Particles that other colliders push there later in it are met in the next.
   std::vector<std::uint8_t> marks_;
+  bool any_wide_ = false; ///< of the pairs: else nobody marks anything
   std::array<std::uint8_t, k_tile_rows> asked_rows_ = {};
   double s_before_ = 0.0, s_step_ = 0.0; ///< of the frame
   PinchedCloth<T> pinched_cloth_;

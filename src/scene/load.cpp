@@ -180,7 +180,7 @@ LoadedScene load_scene(const SceneDescription& description) {
   scene.wind = description.wind;
   apply_settings(description, scene);
   for (const cloth::Garment& garment : scene.garments)
-    if (scene.collides_with_body() && !garment.met.names.empty())
+    if (scene.collides_with_body() && garment.met.which != cloth::MetColliders::Which::all)
       scene.notes.push_back(garment.name + ": meets all of the true body, whatever proxies it ignores");
   return scene;
 }
